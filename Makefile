@@ -1,0 +1,44 @@
+# The whole workshop. `make help` lists the targets.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.installed
+SCENARIO ?= shape
+
+# The viewer's and the SDK's analytics stay off in everything that this file starts.
+export RERUN_ANALYTICS_ENABLED := false
+export OMP_NUM_THREADS ?= 1
+
+.DEFAULT_GOAL := help
+.PHONY: help install run test quick lint bench clean
+
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+install: $(STAMP) ## make .venv with everything that was tested; does nothing when nothing changed
+
+$(STAMP): pyproject.toml constraints.txt
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	@touch $@
+
+run: $(STAMP) ## run a scenario (SCENARIO=shape)
+	$(BIN)/formation run $(SCENARIO)
+
+test: lint ## lint, type check and the whole test suite
+	$(BIN)/pytest -n auto
+
+quick: $(STAMP) ## the test suite without the Monte Carlo runs
+	$(BIN)/pytest -n auto -m 'not slow'
+
+lint: $(STAMP) ## ruff and mypy
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+bench: $(STAMP) ## benchmarks, with their targets
+	$(BIN)/pytest tests/benchmarks --benchmark-only --benchmark-disable-gc
+
+clean: ## remove the environment, caches and runs
+	rm -rf $(VENV) runs build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache .benchmarks
+	find formation robots scenarios tests -name __pycache__ -type d -exec rm -rf {} +

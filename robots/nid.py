@@ -1,0 +1,61 @@
+"""The near-identity diffeomorphism (NID): a unicycle seen as a single integrator.
+
+The point at distance l ahead of the axle's centre x,
+
+    p = x + l (cos theta, sin theta),      dp/dt = R(theta) diag(1, l) (v, omega),
+
+can be given any velocity. In the body frame the map is diag(1, l) and its inverse v = u_x, omega = u_y / l: no
+trigonometry (Olfati-Saber 2002; Pickem et al. 2017, "The Robotarium").
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class NearIdentityDiffeomorphism:
+    """The map between twists of the axle's centre and velocities of the projected point.
+
+    Attributes:
+        projection_distance: l, metres ahead of the axle.
+
+    Raises:
+        ValueError: ``projection_distance`` is not finite and positive; the map is singular at 0.
+    """
+
+    projection_distance: float
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.projection_distance) and self.projection_distance > 0.0):
+            raise ValueError(f"projection_distance must be a positive number of m, got {self.projection_distance}")
+
+    @cached_property
+    def to_twist(self) -> Real:
+        """(2, 2) matrix diag(1, 1/l) from a body-frame velocity of the projected point to the twist (v, omega)."""
+        return np.diag([1.0, 1.0 / self.projection_distance])
+
+    def twist(self, velocity: Real) -> Real:
+        """Twists (v, omega) (..., 2) of body-frame velocities (..., 2) of the projected point, m/s."""
+        return velocity @ self.to_twist
+
+    def velocity(self, twist: Real) -> Real:
+        """Body-frame velocities (..., 2) of the projected point, m/s, of twists (..., 2)."""
+        return twist * np.array([1.0, self.projection_distance])
+
+    def project(self, poses: Real) -> Real:
+        """Projected points (..., 2) of poses (..., 3) of the axle's centre."""
+        theta = poses[..., 2]
+        offset = np.stack([np.cos(theta), np.sin(theta)], axis=-1)
+        return poses[..., :2] + self.projection_distance * offset
+
+    def poses(self, points: Real, theta: Real) -> Real:
+        """Poses (..., 3) of the axle's centre whose projected points are (..., 2) at headings theta (...), radians."""
+        offset = np.stack([np.cos(theta), np.sin(theta)], axis=-1)
+        return np.concatenate([points - self.projection_distance * offset, theta[..., None]], axis=-1)

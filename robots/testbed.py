@@ -1,0 +1,125 @@
+"""The testbed's rules: would the Robotarium accept this run?
+
+A run is rejected when a robot's axle centre leaves the floor, or when two collision centres, each 0.025 m ahead of its
+axle centre, come within 0.135 m of each other (``rps`` 2.1). A wheel command beyond the limit is a warning: the testbed
+clips it. Each kind of violation is reported once, with its first occurrence and the number of steps it lasts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robots.arena import ROBOTARIUM_FLOOR, Arena
+from robots.drive import DifferentialDrive
+from robots.model import COLLISION_CENTRE, GTERNAL
+
+Real = NDArray[np.float64]
+
+COLLISION_DISTANCE = 0.135
+"""Metres between two collision centres, below which the testbed rejects a run (``rps`` 2.1)."""
+
+_CHUNK = 1 << 22  # distances held in memory at once
+
+
+@dataclass(frozen=True)
+class Violation:
+    """One kind of violation.
+
+    Attributes:
+        kind: ``floor`` and ``collision`` reject the run, ``actuator`` is a warning.
+        steps: number of recorded steps at which it holds.
+        time: of the first one, seconds.
+        robots: rows of the robots involved in the first one.
+        place: (x, y) of the first one, metres: the axle centre, or the middle between the two collision centres.
+        value: what was found: the distance beyond the floor or between the centres (m), or the wheel speed (rad/s).
+    """
+
+    kind: Literal["floor", "collision", "actuator"]
+    steps: int
+    time: float
+    robots: tuple[int, ...]
+    place: tuple[float, float]
+    value: float
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The testbed's answer. ``accepted`` is true when no violation rejects the run."""
+
+    violations: tuple[Violation, ...]
+
+    @property
+    def accepted(self) -> bool:
+        return all(v.kind == "actuator" for v in self.violations)
+
+
+@dataclass(frozen=True)
+class Separation:
+    """Distance of the closest pair over time.
+
+    Attributes:
+        distance: (T,) metres; infinite for a single robot.
+        pairs: (T, 2) rows of the closest pair.
+    """
+
+    distance: Real
+    pairs: NDArray[np.intp]
+
+
+def collision_centres(poses: Real) -> Real:
+    """(..., 2) the points that the testbed checks for collisions, of poses (..., 3)."""
+    theta = poses[..., 2]
+    return poses[..., :2] + COLLISION_CENTRE * np.stack([np.cos(theta), np.sin(theta)], axis=-1)
+
+
+def separation(centres: Real) -> Separation:
+    """The closest pair at each time, of points (T, n, 2), metres."""
+    steps, n = centres.shape[:2]
+    a, b = np.triu_indices(n, 1)
+    if len(a) == 0:
+        return Separation(np.full(steps, np.inf), np.zeros((steps, 2), dtype=np.intp))
+    z = np.ascontiguousarray(centres).view(np.complex128)[..., 0]
+    closest = np.empty(steps, dtype=np.intp)
+    distance = np.empty(steps)
+    rows = max(1, _CHUNK // len(a))
+    for start in range(0, steps, rows):
+        part = slice(start, start + rows)
+        gap = np.abs(z[part, a] - z[part, b])
+        closest[part] = gap.argmin(axis=1)
+        distance[part] = gap.min(axis=1)
+    return Separation(distance, np.stack([a[closest], b[closest]], axis=1))
+
+
+def judge(
+    t: Real,
+    poses: Real,
+    wheel_speeds: Real,
+    floor: Arena = ROBOTARIUM_FLOOR,
+    drive: DifferentialDrive = GTERNAL.drive,
+) -> Verdict:
+    """The verdict on a run: times (T,), poses (T, n, 3) of the axle centres and wheel speeds (T, n, 2)."""
+    violations = []
+    outside = ~floor.contains(poses[..., :2])
+    if (at := np.flatnonzero(outside.any(axis=1))).size:
+        k, robot = at[0], int(outside[at[0]].argmax())
+        x, y = poses[k, robot, :2].tolist()
+        beyond = max(floor.x[0] - x, x - floor.x[1], floor.y[0] - y, y - floor.y[1])
+        violations.append(Violation("floor", len(at), float(t[k]), (robot,), (x, y), beyond))
+    centres = collision_centres(poses)
+    near = separation(centres)
+    if (at := np.flatnonzero(near.distance < COLLISION_DISTANCE)).size:
+        k = at[0]
+        i, j = near.pairs[k].tolist()
+        x, y = centres[k, [i, j]].mean(axis=0).tolist()
+        violations.append(Violation("collision", len(at), float(t[k]), (i, j), (x, y), float(near.distance[k])))
+    fast = np.abs(wheel_speeds).max(axis=-1) > drive.wheel_speed_limit * (1.0 + 1e-9)
+    if (at := np.flatnonzero(fast.any(axis=1))).size:
+        k, robot = at[0], int(fast[at[0]].argmax())
+        x, y = poses[k, robot, :2].tolist()
+        speed = float(np.abs(wheel_speeds[k, robot]).max())
+        violations.append(Violation("actuator", len(at), float(t[k]), (robot,), (x, y), speed))
+    return Verdict(tuple(violations))

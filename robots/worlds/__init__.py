@@ -1,0 +1,51 @@
+"""Four worlds behind one protocol, from the theorem's points to bodies with mass.
+
+A run on each rung from one seed tells how much of an error the theory, the map, the wheels and the contacts bring.
+"""
+
+from __future__ import annotations
+
+from robots.arena import Arena
+from robots.drive import Saturation
+from robots.model import RobotModel
+from robots.nid import NearIdentityDiffeomorphism
+from robots.worlds.kinematic import Saturated as Saturated
+from robots.worlds.kinematic import SingleIntegrator as SingleIntegrator
+from robots.worlds.kinematic import Unicycle as Unicycle
+from robots.worlds.protocol import Controller as Controller
+from robots.worlds.protocol import Real
+from robots.worlds.protocol import World as World
+
+PLANTS = ("single_integrator", "unicycle", "saturated", "pymunk")
+"""The worlds by the name that scenario files and the command line use, from the simplest to the most real."""
+
+
+def make_world(
+    plant: str,
+    points: Real,
+    theta: Real,
+    *,
+    nid: NearIdentityDiffeomorphism,
+    robot: RobotModel,
+    saturation: Saturation = "scale",
+    arena: Arena | None = None,
+) -> World:
+    """The world named ``plant`` with projected points (..., n, 2), metres, and headings theta (..., n), radians.
+
+    ``single_integrator`` has no bodies: its poses are the points themselves.
+
+    Raises:
+        ValueError: ``plant`` is not one of :data:`PLANTS`.
+    """
+    if plant == "single_integrator":
+        return SingleIntegrator(points, theta)
+    poses = nid.poses(points, theta)
+    if plant == "unicycle":
+        return Unicycle(poses, nid, robot.drive)
+    if plant == "saturated":
+        return Saturated(poses, nid, robot.drive, saturation)
+    if plant == "pymunk":
+        from robots.worlds.contact import Contact  # pymunk is loaded only where bodies collide
+
+        return Contact(poses, nid, robot, saturation, arena)
+    raise ValueError(f"plant must be one of {', '.join(PLANTS)}, got {plant!r}")

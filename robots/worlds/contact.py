@@ -1,0 +1,142 @@
+"""The world with mass, traction, contact and walls, on pymunk (Chipmunk 2-D).
+
+Each chassis is a dynamic box, its centre of mass ahead of the axle. It hangs on a massless kinematic body that moves as
+the wheels command, by two joints without position correction:
+
+- a pivot at the axle's centre, whose largest force is the tyres' traction mu m g. It drives forward and, because tyres
+  do not slide sideways until that same limit, resists lateral motion;
+- a gear, whose largest torque is mu m g b / 2: each wheel carries half the weight at half the base from the centre.
+
+The solver meets both limits jointly with all contacts, so a robot that is pushed harder than its tyres hold yields, and
+two robots that push each other stop. The chassis is never moved or given a velocity from outside.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pymunk
+from pymunk import batch
+
+from robots.arena import Arena
+from robots.drive import Saturation
+from robots.model import RobotModel
+from robots.nid import NearIdentityDiffeomorphism
+from robots.worlds.kinematic import chord_factor
+from robots.worlds.protocol import Controller, Real
+
+SUBSTEPS = 4
+"""Solver steps per control period; keeps the deepest overlap of two chassis near 2 mm."""
+
+WALL_THICKNESS = 0.05
+"""Metres; the inner faces of the walls are the sides of the arena."""
+
+_STATE = (
+    batch.BodyFields.POSITION | batch.BodyFields.ANGLE | batch.BodyFields.VELOCITY | batch.BodyFields.ANGULAR_VELOCITY
+)
+_STATE_WIDTH = 6
+_COMMAND = batch.BodyFields.VELOCITY | batch.BodyFields.ANGULAR_VELOCITY
+
+
+class Contact:
+    """Differential-drive bodies in a pymunk space.
+
+    Attributes:
+        space: the pymunk space; bodies 0..n-1 are the chassis, n..2n-1 their kinematic partners.
+    """
+
+    def __init__(
+        self,
+        poses: Real,
+        nid: NearIdentityDiffeomorphism,
+        robot: RobotModel,
+        saturation: Saturation = "scale",
+        arena: Arena | None = None,
+        substeps: int = SUBSTEPS,
+    ) -> None:
+        self.poses = np.array(poses, dtype=np.float64)
+        if self.poses.ndim != 2:
+            raise ValueError(f"the pymunk world holds one run, poses of shape (n, 3), got {self.poses.shape}")
+        self._n = n = len(self.poses)
+        self._substeps = substeps
+        self._drive, self._saturation = robot.drive, saturation
+        self._l, self._ahead = nid.projection_distance, robot.chassis.centre_offset
+        self._to_wheels = (robot.drive.to_wheels @ nid.to_twist).T
+        self._to_twist = robot.drive.to_twist.T
+        self.space = _space(self.poses, robot, arena)
+        self.wheel_speeds = np.zeros((n, 2))
+        self._state = batch.Buffer()
+        self._command = np.zeros((2 * n, 3))
+        self._command_buffer = batch.Buffer()
+        self._command_buffer.set_float_buf(self._command)
+        self._observe()
+
+    def step(self, controller: Controller, period: float) -> None:
+        wheels = controller(self.points, self.headings) @ self._to_wheels
+        self.wheel_speeds = self._drive.saturate(wheels, self._saturation)
+        twist = self.wheel_speeds @ self._to_twist
+        drive = self._command[self._n :]
+        # The partner moves along the chord of the arc that the wheels command over the whole period.
+        chord = chord_factor(twist[:, 1] * period)
+        chord *= twist[:, 0]
+        chord *= self.headings.view(np.complex128)[:, 0]
+        drive[:, :2] = chord[:, None].view(np.float64)
+        drive[:, 2] = twist[:, 1]
+        batch.set_space_bodies(self.space, _COMMAND, self._command_buffer)
+        dt = period / self._substeps
+        for _ in range(self._substeps):
+            self.space.step(dt)
+        self._observe()
+
+    def _observe(self) -> None:
+        self._state.clear()
+        batch.get_space_bodies(self.space, _STATE, self._state)
+        chassis = np.frombuffer(self._state.float_buf()).reshape(-1, _STATE_WIDTH)[: self._n]
+        self._command[: self._n] = chassis[:, 3:]  # written back unchanged with the next command
+        theta = chassis[:, 2]
+        self.headings = np.exp(1j * theta)[:, None].view(np.float64)
+        axle = chassis[:, :2] - self._ahead * self.headings
+        self.poses[:, :2] = axle
+        self.poses[:, 2] = theta
+        self.points = axle + self._l * self.headings
+
+
+def _space(poses: Real, robot: RobotModel, arena: Arena | None) -> pymunk.Space:
+    space = pymunk.Space()
+    space.collision_slop = 1e-4  # the default of 0.1 m would let robots sink into each other by their own size
+    chassis, ahead = robot.chassis, robot.chassis.centre_offset
+    bodies = []
+    for x, y, theta in poses.tolist():
+        body = pymunk.Body(chassis.mass, chassis.inertia)
+        body.position = x + ahead * np.cos(theta), y + ahead * np.sin(theta)
+        body.angle = theta
+        box = pymunk.Poly.create_box(body, (chassis.length, chassis.width))
+        box.friction = chassis.body_friction
+        space.add(body, box)
+        bodies.append(body)
+    traction = chassis.traction_limit
+    for body in bodies:
+        partner = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+        partner.position = body.local_to_world((-ahead, 0.0))
+        pivot = pymunk.PivotJoint(partner, body, (0.0, 0.0), (-ahead, 0.0))
+        pivot.max_force = traction
+        gear = pymunk.GearJoint(partner, body, 0.0, 1.0)
+        gear.max_force = traction * robot.drive.base_length / 2.0
+        for joint in (pivot, gear):
+            joint.max_bias = 0.0
+        space.add(partner, pivot, gear)
+    if arena is not None and arena.walls:
+        space.add(*_walls(space, arena, chassis.body_friction))
+    return space
+
+
+def _walls(space: pymunk.Space, arena: Arena, friction: float) -> Sequence[pymunk.Shape]:
+    radius = WALL_THICKNESS / 2.0
+    corners = arena.corners + radius * np.sign(arena.corners - arena.corners.mean(axis=0))
+    walls = []
+    for a, b in zip(corners.tolist(), np.roll(corners, -1, axis=0).tolist(), strict=True):
+        wall = pymunk.Segment(space.static_body, tuple(a), tuple(b), radius)
+        wall.friction = friction
+        walls.append(wall)
+    return walls

@@ -1,0 +1,105 @@
+"""Worlds without mass or contact: the theorem's points, the unicycle, and the unicycle with wheel limits.
+
+All three accept any leading batch dimensions, so that many runs advance as one array.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robots.drive import DifferentialDrive, Saturation
+from robots.nid import NearIdentityDiffeomorphism
+from robots.worlds.protocol import Controller, Real
+
+
+class SingleIntegrator:
+    """Points with dp/dt = u, the paper's eq. (p), integrated by the classical Runge-Kutta method of order four.
+
+    Each point keeps the frame it was given: its heading is that frame's x axis and never turns.
+    """
+
+    def __init__(self, points: Real, theta: Real) -> None:
+        self.points = np.array(points, dtype=np.float64)
+        self.poses = np.concatenate([self.points, theta[..., None]], axis=-1)
+        self.headings = _unit(theta)
+        self.wheel_speeds = np.full_like(self.points, np.nan)
+
+    def step(self, controller: Controller, period: float) -> None:
+        h, p, frame = period, self.points, self.headings.view(np.complex128)
+
+        def derivative(points: Real) -> Real:
+            return (controller(points, self.headings).view(np.complex128) * frame).view(np.float64)
+
+        k1 = derivative(p)
+        k2 = derivative(p + (h / 2.0) * k1)
+        k3 = derivative(p + (h / 2.0) * k2)
+        k4 = derivative(p + h * k3)
+        self.points = p + (h / 6.0) * (k1 + 2.0 * (k2 + k3) + k4)
+        self.poses[..., :2] = self.points
+
+
+class Unicycle:
+    """Unicycles that follow every command: the NID map on exact arcs, without limits.
+
+    The command is held over the period, as a digital controller does, and the arc is integrated in closed form.
+    """
+
+    def __init__(self, poses: Real, nid: NearIdentityDiffeomorphism, drive: DifferentialDrive) -> None:
+        self.poses = np.array(poses, dtype=np.float64)
+        self._l = nid.projection_distance
+        self._to_wheels = (drive.to_wheels @ nid.to_twist).T
+        self._to_twist = drive.to_twist.T
+        self._drive = drive
+        self.wheel_speeds = np.zeros_like(self.poses[..., :2])
+        self._observe()
+
+    def step(self, controller: Controller, period: float) -> None:
+        self.wheel_speeds = self._limited(controller(self.points, self.headings) @ self._to_wheels)
+        twist = self.wheel_speeds @ self._to_twist
+        turn = twist[..., 1] * period
+        chord = chord_factor(turn)
+        chord *= twist[..., 0] * period
+        chord *= self.headings.view(np.complex128)[..., 0]
+        self.poses[..., :2] += chord[..., None].view(np.float64)
+        self.poses[..., 2] += turn
+        self._observe()
+
+    def _limited(self, wheel_speeds: Real) -> Real:
+        return wheel_speeds
+
+    def _observe(self) -> None:
+        self.headings = _unit(self.poses[..., 2])
+        self.points = self.poses[..., :2] + self._l * self.headings
+
+
+class Saturated(Unicycle):
+    """Unicycles whose wheels have a speed limit."""
+
+    def __init__(
+        self,
+        poses: Real,
+        nid: NearIdentityDiffeomorphism,
+        drive: DifferentialDrive,
+        saturation: Saturation = "scale",
+    ) -> None:
+        super().__init__(poses, nid, drive)
+        self._saturation: Saturation = saturation
+
+    def _limited(self, wheel_speeds: Real) -> Real:
+        return self._drive.saturate(wheel_speeds, self._saturation)
+
+
+def chord_factor(turn: Real) -> np.ndarray:
+    """The chord of a unit arc that turns by ``turn`` (...), radians, relative to its initial heading, complex (...).
+
+    A body that moves at constant twist covers the chord (e^{i turn} - 1) / (i turn) of its path, written here as
+    e^{i turn / 2} sin(turn / 2) / (turn / 2), which keeps full accuracy for small turns.
+    """
+    half = 0.5 * turn
+    direction = np.exp(1j * half)
+    direction *= np.divide(direction.imag, half, out=np.ones_like(half), where=half != 0.0)
+    return direction
+
+
+def _unit(theta: Real) -> Real:
+    return np.exp(1j * theta)[..., None].view(np.float64)

@@ -1,0 +1,38 @@
+"""What every world offers, from the theorem's points to bodies with mass.
+
+A world holds the state of all robots and advances it by one control period. It asks the controller for the body-frame
+velocities of the projected points as often as its integrator needs: a sampled plant once per period, the continuous
+model of the theorem at every stage of its Runge-Kutta step.
+"""
+
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+
+Controller = Callable[[Real, Real], Real]
+"""Maps projected points (..., n, 2), metres, and unit heading vectors (..., n, 2) to body-frame velocities (..., n, 2),
+m/s, of the projected points."""
+
+
+class World(Protocol):
+    """A plant.
+
+    Attributes:
+        poses: (..., n, 3) x, y, theta of the axle centres, metres and radians. theta is continuous, not wrapped.
+        points: (..., n, 2) projected points, metres.
+        headings: (..., n, 2) unit vectors of the headings.
+        wheel_speeds: (..., n, 2) left and right wheel speeds of the last period, rad/s; NaN where there are no wheels.
+    """
+
+    poses: Real
+    points: Real
+    headings: Real
+    wheel_speeds: Real
+
+    def step(self, controller: Controller, period: float) -> None:
+        """Advance the state by one control period, seconds."""
+        ...

@@ -1,0 +1,1 @@
+"""The experiments: scenario files, runner, trajectory, metrics, recording, figures, comparison, command line."""

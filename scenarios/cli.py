@@ -1,0 +1,97 @@
+"""The command line ``formation``. Heavy packages are imported by the commands that use them."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from scenarios.errors import InputError, did_you_mean
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+DONE, MISSED, BAD_INPUT = 0, 1, 2
+"""Exit codes: done; a comparison missed or a run did not reach its goal; bad input."""
+
+
+class Commands(click.Group):
+    """The commands, with the nearest name for a misspelt one."""
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if args and not args[0].startswith("-") and args[0] not in self.commands:
+            raise InputError(f"command: no command named {args[0]!r}, {did_you_mean(args[0], self.commands)}")
+        return super().resolve_command(ctx, args)
+
+
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="angle-formation")
+def cli() -> None:
+    """Angle-constrained formation control of differential-drive robots."""
+
+
+@cli.command("list")
+def list_command() -> None:
+    """What scenarios there are."""
+    from scenarios.report import print_library
+
+    print_library(_console())
+
+
+@cli.command()
+@click.argument("scenario")
+@click.option("--set", "changes", multiple=True, metavar="KEY=VALUE", help="Change a key of the scenario.")
+def show(scenario: str, changes: tuple[str, ...]) -> None:
+    """Graph, angles, assumptions, predicted rates and end of SCENARIO (a name or a file)."""
+    from scenarios.experiment import open_experiment
+    from scenarios.report import print_experiment
+
+    print_experiment(_console(), open_experiment(scenario, changes))
+
+
+@cli.command()
+@click.argument("scenario")
+@click.option("--seed", default=0, show_default=True, type=click.IntRange(min=0), help="Seed of all randomness.")
+@click.option("--plant", metavar="P", help="single_integrator, unicycle, saturated or pymunk.")
+@click.option("--duration", type=float, metavar="S", help="Seconds to run instead of the scenario's own.")
+@click.option("--set", "changes", multiple=True, metavar="KEY=VALUE", help="Change a key of the scenario.")
+@click.option("--out", type=click.Path(path_type=Path), help="Run folder.  [default: runs/SCENARIO-PLANT-seedN]")
+def run(
+    scenario: str, seed: int, plant: str | None, duration: float | None, changes: tuple[str, ...], out: Path | None
+) -> None:
+    """Run SCENARIO (a name or a file), print its result and write its run folder."""
+    from scenarios.experiment import open_experiment
+    from scenarios.run import run_to_folder
+
+    if plant is not None:
+        changes = (*changes, f'plant.name="{plant}"')
+    experiment = open_experiment(scenario, changes, duration)
+    if not run_to_folder(experiment, seed, out, _console()):
+        raise SystemExit(MISSED)
+
+
+def _console() -> Console:
+    from rich.console import Console
+
+    return Console(highlight=False, soft_wrap=True)
+
+
+def main() -> None:
+    """Run the command line: errors on one line on stderr, never a traceback for bad input."""
+    try:
+        cli.main(standalone_mode=False)
+    except InputError as error:
+        _fail(str(error))
+    except click.ClickException as error:
+        _fail(error.format_message())
+    except click.Abort:
+        sys.exit(130)
+
+
+def _fail(message: str) -> None:
+    click.echo(f"formation: {' '.join(message.split())}", err=True)
+    sys.exit(BAD_INPUT)

@@ -1,0 +1,35 @@
+"""The one exception for bad input, and the nearest right name for a misspelt one."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+
+
+class InputError(ValueError):
+    """Input that cannot be used. Its message is one line: file, field, value and what was expected."""
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """A clause that offers the nearest known name, or lists the known ones.
+
+    >>> did_you_mean("shpae", ["maneuver", "shape"])
+    "did you mean 'shape'?"
+    >>> did_you_mean("q", ["maneuver", "shape"])
+    'known: maneuver, shape'
+    """
+    options = list(known)
+    close = difflib.get_close_matches(name, options, n=1, cutoff=0.6)
+    return f"did you mean {close[0]!r}?" if close else f"known: {', '.join(options)}"
+
+
+@contextmanager
+def located(file: str, field: str) -> Iterator[None]:
+    """Give a ValueError of the theory or of the machines the file and the field that it came from."""
+    try:
+        yield
+    except InputError:
+        raise
+    except ValueError as error:
+        raise InputError(f"{file}: {field}: {error}") from error

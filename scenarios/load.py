@@ -1,0 +1,198 @@
+"""From a scenario's name or path, and ``--set`` changes, to a validated :class:`Scenario`."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, get_args
+
+from pydantic import BaseModel, ValidationError
+
+from scenarios.errors import InputError, did_you_mean
+from scenarios.schema import Scenario
+
+LIBRARY = Path(__file__).parent / "library"
+
+
+@dataclass(frozen=True)
+class ScenarioFile:
+    """A scenario with where it came from.
+
+    Attributes:
+        name: the file's stem.
+        path: as given, for messages.
+        description: the comment at the file's head, without its hash signs.
+        scenario: the validated content, changes included.
+    """
+
+    name: str
+    path: str
+    description: str
+    scenario: Scenario
+
+    @property
+    def sha256(self) -> str:
+        """Digest of the validated content: equal for files that mean the same, different after any change."""
+        content = json.dumps(self.scenario.model_dump(mode="json"), sort_keys=True)
+        return hashlib.sha256(content.encode()).hexdigest()
+
+
+def library() -> list[str]:
+    """Names of the scenarios that come with the project."""
+    return sorted(path.stem for path in LIBRARY.glob("*.toml"))
+
+
+def find(scenario: str) -> Path:
+    """The file of a library name or of a path.
+
+    Raises:
+        InputError: there is none.
+    """
+    if scenario.endswith(".toml") or "/" in scenario:
+        path = Path(scenario)
+        if not path.is_file():
+            raise InputError(f"{scenario}: no such scenario file")
+        return path
+    path = LIBRARY / f"{scenario}.toml"
+    if not path.is_file():
+        raise InputError(f"scenario: no scenario named {scenario!r}, {did_you_mean(scenario, library())}")
+    return path
+
+
+def load(scenario: str, changes: Sequence[str] = ()) -> ScenarioFile:
+    """Read and validate a scenario by name or path.
+
+    Args:
+        scenario: a library name, or a path to a TOML file.
+        changes: ``key=value`` texts; dotted keys, values as in TOML, ``agents.3.start=[0, 1]`` by agent number.
+
+    Raises:
+        InputError: no such file, not TOML, or content that the schema refuses.
+    """
+    path = find(scenario)
+    try:
+        text = path.read_text(encoding="utf-8")
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{scenario}: not valid TOML: {error}") from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{scenario}: cannot be read: {error}") from error
+    for change in changes:
+        _apply(data, change)
+    return ScenarioFile(path.stem, scenario, head_comment(text), validate(data, scenario))
+
+
+def head_comment(text: str) -> str:
+    """The comment block at the head of a scenario file, without its hash signs.
+
+    >>> head_comment("# Six robots.\\n#\\n# Law  (u)\\n\\ntitle = 1")
+    'Six robots.\\n\\nLaw  (u)'
+    """
+    lines = []
+    for line in text.splitlines():
+        if not line.startswith("#"):
+            break
+        lines.append(line.removeprefix("#").removeprefix(" "))
+    return "\n".join(lines)
+
+
+def validate(data: Mapping[str, Any], file: str) -> Scenario:
+    """The scenario in parsed TOML ``data``.
+
+    Raises:
+        InputError: the first thing that the schema refuses.
+    """
+    try:
+        scenario = Scenario.model_validate(data)
+    except ValidationError as error:
+        raise InputError(f"{file}: {_explain(error, data)}") from None
+    seen: set[int] = set()
+    for agent in scenario.agents:
+        if agent.id in seen:
+            raise InputError(f"{file}: agents: agent {agent.id} is listed twice")
+        seen.add(agent.id)
+    for number in range(1, len(seen) + 1):
+        if number not in seen:
+            raise InputError(f"{file}: agents: agent {number} is missing, agents are numbered 1 to {len(seen)}")
+    if bool(scenario.phases) == (scenario.duration_s is not None):
+        raise InputError(f"{file}: duration_s: expected either duration_s or phases")
+    return scenario
+
+
+def _apply(data: dict[str, Any], change: str) -> None:
+    key, equals, text = change.partition("=")
+    parts = key.strip().split(".")
+    if not equals or not all(parts):
+        raise InputError(f"--set {change}: expected key=value with a dotted key")
+    try:
+        value = tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        value = text.strip()  # a bare word, as in plant.name=saturated
+    place: Any = data
+    for part in parts[:-1]:
+        place = _descend(place, part, change)
+    if not isinstance(place, dict):
+        raise InputError(f"--set {change}: {'.'.join(parts[:-1])} is not a table")
+    place[parts[-1]] = value
+
+
+def _descend(place: Any, part: str, change: str) -> Any:
+    if isinstance(place, list):
+        for position, entry in enumerate(place, start=1):
+            if isinstance(entry, dict) and str(entry.get("id", position)) == part:
+                return entry
+        raise InputError(f"--set {change}: no entry {part}")
+    if not isinstance(place, dict):
+        raise InputError(f"--set {change}: {part} is not in a table")
+    return place.setdefault(part, {})
+
+
+def _explain(error: ValidationError, data: Mapping[str, Any]) -> str:
+    """One line for the first error: field, value and what was expected."""
+    first = error.errors(include_url=False)[0]
+    location = first["loc"]
+    field = _field_name(location, data)
+    if first["type"] == "extra_forbidden":
+        parent = _model_at(Scenario, location[:-1])
+        return f"{field}: unknown key, {did_you_mean(str(location[-1]), parent.model_fields)}"
+    if first["type"] == "missing":
+        return f"{field}: missing"
+    message = first["msg"].removeprefix("Input should be ")
+    return f"{field}: expected {message}, got {first['input']!r}"
+
+
+def _field_name(location: Iterable[int | str], data: Any) -> str:
+    name = ""
+    for part in location:
+        entry = None
+        if isinstance(data, list) and isinstance(part, int) and part < len(data):
+            entry = data[part]
+        elif isinstance(data, dict):
+            entry = data.get(part)
+        if not isinstance(part, int):
+            name += f".{part}" if name else part
+        elif isinstance(entry, dict) and "id" in entry:
+            name += f"[id {entry['id']}]"
+        else:
+            name += f"[{part + 1}]"
+        data = entry
+    return name
+
+
+def _model_at(model: type[BaseModel], location: Sequence[int | str]) -> type[BaseModel]:
+    for part in location:
+        if isinstance(part, int):
+            continue
+        annotation = model.model_fields[part].annotation
+        model = next(m for m in _flatten(annotation) if isinstance(m, type) and issubclass(m, BaseModel))
+    return model
+
+
+def _flatten(annotation: Any) -> Iterable[Any]:
+    yield annotation
+    for argument in get_args(annotation):
+        yield from _flatten(argument)

@@ -1,0 +1,58 @@
+"""One run from an experiment to its run folder, with a progress bar and the printed result."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+from scenarios import run_folder
+from scenarios.experiment import Experiment
+from scenarios.metrics import measure
+from scenarios.report import print_result
+from scenarios.result import result
+from scenarios.simulation import simulate
+
+PROGRESS_PERIODS = 200
+"""Control periods between two updates of the progress bar."""
+
+
+def run_to_folder(experiment: Experiment, seed: int, out: Path | None, console: Console) -> bool:
+    """Run, write the run folder, print the result.
+
+    Returns:
+        Whether the run reached its goal.
+
+    Raises:
+        InputError: the folder cannot be written; known before the run starts.
+    """
+    folder = out or run_folder.default_path(experiment.file.name, experiment.plant, seed)
+    with run_folder.writing(folder) as scratch:
+        with _progress(console) as progress:
+            task = progress.add_task(experiment.file.name)
+
+            def advance(done: int, total: int) -> None:
+                if done % PROGRESS_PERIODS == 0 or done == total:
+                    progress.update(task, completed=done, total=total)
+
+            trajectory = simulate(experiment, seed, advance)
+        metrics = measure(experiment, trajectory)
+        summary = result(experiment, seed, trajectory, metrics)
+        trajectory.save(scratch / run_folder.TRAJECTORY, metrics.angle_errors)
+        run_folder.write_json(scratch / run_folder.SCENARIO, experiment.scenario.model_dump(mode="json"))
+        run_folder.write_json(scratch / run_folder.RESULT, summary)
+    print_result(console, summary)
+    console.print(f"run folder: {folder}")
+    return metrics.outcome == "converged"
+
+
+def _progress(console: Console) -> Progress:
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed}/{task.total} periods"),
+        TimeRemainingColumn(),
+        console=console,
+        transient=True,
+    )

@@ -1,0 +1,62 @@
+"""The run folder: written whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from scenarios.errors import InputError
+
+RESULT = "result.json"
+TRAJECTORY = "trajectory.npz"
+RECORDING = "recording.rrd"
+SCENARIO = "scenario.json"
+"""The validated scenario, with all changes of the command line: what replay and plots need besides the states."""
+
+
+def default_path(scenario: str, plant: str, seed: int) -> Path:
+    """Where a run goes when no folder is named."""
+    return Path("runs") / f"{scenario}-{plant}-seed{seed}"
+
+
+@contextmanager
+def writing(folder: Path) -> Iterator[Path]:
+    """A scratch folder beside ``folder`` that takes its place when the block ends well and vanishes when it does not.
+
+    Entering proves that the place can be written, before anything is computed. An older run in the same place is
+    replaced; anything else is left alone.
+
+    Raises:
+        InputError: the place cannot be written, or holds something that is not a run.
+    """
+    if folder.exists() and not is_run(folder) and (not folder.is_dir() or any(folder.iterdir())):
+        raise InputError(f"--out {folder}: exists and is not a run folder")
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        scratch = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+    except OSError as error:
+        raise InputError(f"--out {folder}: cannot be written: {error.strerror}") from error
+    try:
+        yield scratch
+        scratch.chmod(0o755)
+        if folder.exists():
+            shutil.rmtree(folder)
+        os.replace(scratch, folder)
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)
+
+
+def is_run(folder: Path) -> bool:
+    """Whether ``folder`` holds a run."""
+    return (folder / RESULT).is_file() and (folder / TRAJECTORY).is_file()
+
+
+def write_json(path: Path, content: Any) -> None:
+    """Write JSON as people read it; numbers keep all their digits."""
+    path.write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
