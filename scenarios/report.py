@@ -40,10 +40,11 @@ def print_experiment(console: Console, experiment: Experiment) -> None:
         console.print(experiment.file.description, style="dim", highlight=False)
     sine = np.abs(np.sin(target.follower_angles))
     worst = int(sine.argmin())
+    flattest = tuple(agents.numbers(graph.triangles[worst]).tolist())
     console.print("\n[bold]Assumptions[/bold]")
     console.print(f"  1  leader-first-follower sensing graph: {graph.n} agents, {len(graph.edges)} edges, holds")
     console.print(
-        f"  2  strongly nondegenerate target: holds, flattest triangle {tuple(agents.numbers(graph.triangles[worst]).tolist())}, "
+        f"  2  strongly nondegenerate target: holds, flattest triangle {flattest}, "
         f"|sin| = {sine[worst]:.3f} at {agents.name(graph.followers[worst])}"
     )
     start = experiment.start
