@@ -1,13 +1,22 @@
 """The theory: graphs, angles, targets, laws, predictions. numpy only; knows no robot, no clock, no file."""
 
+from formation.activation import SequentialActivation as SequentialActivation
+from formation.activation import collision_margins as collision_margins
 from formation.angle_law import AngleLaw as AngleLaw
 from formation.angle_law import follower_gains as follower_gains
 from formation.angles import AngleSet as AngleSet
 from formation.angles import signed_angle as signed_angle
 from formation.angles import wrap as wrap
+from formation.closed_loop import asymptotic_rates as asymptotic_rates
+from formation.closed_loop import closed_loop_matrix as closed_loop_matrix
+from formation.closed_loop import propagate as propagate
+from formation.closed_loop import settling_bound as settling_bound
+from formation.comparison_law import ComparisonLaw as ComparisonLaw
 from formation.constraint import constraint_coefficients as constraint_coefficients
 from formation.constraint import interior_angles as interior_angles
-from formation.first_follower import FIRST_FOLLOWER_LAWS as FIRST_FOLLOWER_LAWS
+from formation.edge_laws import EDGE_LAWS as EDGE_LAWS
+from formation.estimator import VelocityEstimator as VelocityEstimator
+from formation.from_angles import target_from_angles as target_from_angles
 from formation.graph import SensingGraph as SensingGraph
 from formation.maneuver import Phase as Phase
 from formation.maneuver import pair_ends as pair_ends
@@ -16,4 +25,5 @@ from formation.prediction import Similarity as Similarity
 from formation.prediction import decay_rates as decay_rates
 from formation.prediction import end_configuration as end_configuration
 from formation.prediction import end_similarity as end_similarity
+from formation.random_target import random_target as random_target
 from formation.target import TargetFormation as TargetFormation

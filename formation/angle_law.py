@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from formation import agents
-from formation.first_follower import COMPASS_FREE, FIRST_FOLLOWER_LAWS
+from formation.edge_laws import COMPASS_FREE, EDGE_LAWS
 from formation.plane import Complex, Real, as_complex, as_vectors
 from formation.target import TargetFormation
 
@@ -25,16 +25,16 @@ class AngleLaw:
         needs_compass: whether an agent needs the common x axis in its own frame.
 
     Raises:
-        ValueError: ``first_follower`` names no law of :data:`FIRST_FOLLOWER_LAWS`.
+        ValueError: ``first_follower`` names no law of :data:`EDGE_LAWS`.
     """
 
     def __init__(self, target: TargetFormation, first_follower: str = "stationary") -> None:
-        if first_follower not in FIRST_FOLLOWER_LAWS:
-            raise ValueError(f"first_follower must be one of {', '.join(FIRST_FOLLOWER_LAWS)}, got {first_follower!r}")
+        if first_follower not in EDGE_LAWS:
+            raise ValueError(f"first_follower must be one of {', '.join(EDGE_LAWS)}, got {first_follower!r}")
         self.gains = follower_gains(target)
         self.needs_compass = first_follower not in COMPASS_FREE
         self._stationary = first_follower == "stationary"
-        self._first_follower = FIRST_FOLLOWER_LAWS[first_follower]
+        self._first_follower = EDGE_LAWS[first_follower]
         self._n = target.graph.n
 
     def __call__(self, relative: Real, compass: Real | None = None, delta: Real | None = None) -> Real:

@@ -44,13 +44,14 @@ def list_command() -> None:
 
 @cli.command()
 @click.argument("scenario")
+@click.option("--seed", default=0, show_default=True, type=click.IntRange(min=0), help="Seed of random starts.")
 @click.option("--set", "changes", multiple=True, metavar="KEY=VALUE", help="Change a key of the scenario.")
-def show(scenario: str, changes: tuple[str, ...]) -> None:
+def show(scenario: str, seed: int, changes: tuple[str, ...]) -> None:
     """Graph, angles, assumptions, predicted rates and end of SCENARIO (a name or a file)."""
     from scenarios.experiment import open_experiment
     from scenarios.report import print_experiment
 
-    print_experiment(_console(), open_experiment(scenario, changes))
+    print_experiment(_console(), open_experiment(scenario, changes), seed)
 
 
 @cli.command()

@@ -2,23 +2,31 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from formation import AngleLaw, AngleSet, Phase, SensingGraph, TargetFormation, agents, end_similarity, wrap
+from formation import (
+    AngleLaw,
+    AngleSet,
+    ComparisonLaw,
+    Phase,
+    SensingGraph,
+    TargetFormation,
+    VelocityEstimator,
+    agents,
+)
 from robots import GTERNAL, Arena, Chassis, DifferentialDrive, NearIdentityDiffeomorphism, RobotModel
 from robots import RelativePositionSensor as Sensor
 from scenarios.errors import InputError, located
 from scenarios.load import ScenarioFile, load
 from scenarios.schema import Scenario
+from scenarios.starts import Starts, build_starts
+from scenarios.targets import build_target
 
 Real = NDArray[np.float64]
-
-PRINTED_DEGREES = 0.005
-"""Degrees by which an angle that is listed with two decimals may differ from the exact one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,19 +38,20 @@ class Experiment:
         target: the target formation with its sensing graph.
         angles: the angles that are measured and compared.
         target_angles: (m,) their targets, radians, exact.
-        start: (n, 2) initial projected points, metres.
-        headings: (n,) initial headings, radians; NaN where the seed decides.
+        starts: the initial state, as far as the scenario fixes it.
         phases: the maneuver, a single phase for shape control.
+        law: the formation law.
+        estimator: how agents learn v_r; None where it is broadcast.
     """
 
     file: ScenarioFile
     target: TargetFormation
     angles: AngleSet
     target_angles: Real
-    start: Real
-    headings: Real
+    starts: Starts
     phases: tuple[Phase, ...]
-    law: AngleLaw
+    law: AngleLaw | ComparisonLaw
+    estimator: VelocityEstimator | None
     sensor: Sensor
     nid: NearIdentityDiffeomorphism
     robot: RobotModel
@@ -70,6 +79,16 @@ class Experiment:
         """Bound on the sum of the absolute angle errors, radians."""
         return self.scenario.goal.angle_error_sum_rad
 
+    @cached_property
+    def first_follower(self) -> str:
+        """The edge law by which agent 2 acts, a name of :data:`formation.EDGE_LAWS`."""
+        law = self.scenario.law
+        return law.first_follower if law.name == "angle" else law.name
+
+    def initial_points(self, seed: int) -> Real:
+        """(n, 2) initial projected points of the run with that seed, metres."""
+        return self.starts.draw(np.random.default_rng(seed))[0]
+
 
 def open_experiment(scenario: str, changes: tuple[str, ...] = (), duration: float | None = None) -> Experiment:
     """The experiment of a scenario's name or path, with ``--set`` changes and a shortened or lengthened run.
@@ -87,16 +106,7 @@ def build(file: ScenarioFile, duration: float | None = None) -> Experiment:
         InputError: anything in the scenario that cannot be used, with file and field.
     """
     scenario, path = file.scenario, file.path
-    ordered = sorted(scenario.agents, key=lambda agent: agent.id)
-    n = len(ordered)
-    with located(path, "agents"):
-        edges = [(a.id, neighbour) for a in ordered for neighbour in a.neighbours]
-        graph = SensingGraph.from_edges(n, agents.rows(edges))
-        target = TargetFormation(graph, _vectors(path, "target", [a.target for a in ordered]))
-    angles, target_angles = _angles(path, scenario, target)
-    start = _vectors(path, "start", [a.start for a in ordered])
-    with located(path, "agents[id 2].start"):
-        end_similarity(target, start[agents.LEADER], start[agents.FIRST_FOLLOWER])
+    target, angles, target_angles = build_target(path, scenario)
     with located(path, "robot"):
         robot = _robot(scenario)
         nid = NearIdentityDiffeomorphism(scenario.robot.projection_distance_m)
@@ -107,22 +117,34 @@ def build(file: ScenarioFile, duration: float | None = None) -> Experiment:
         target=target,
         angles=angles,
         target_angles=target_angles,
-        start=start,
-        headings=np.radians([np.nan if a.heading_deg is None else a.heading_deg for a in ordered]),
-        phases=_phases(path, scenario, duration),
-        law=AngleLaw(target, scenario.law.first_follower),
-        sensor=Sensor(graph.edges, scenario.sensor.position_noise_m, np.radians(scenario.sensor.bearing_noise_deg)),
+        starts=build_starts(path, scenario, target),
+        phases=_phases(path, scenario, target, duration),
+        law=_law(scenario, target),
+        estimator=_estimator(path, scenario, target.graph),
+        sensor=_sensor(scenario, target.graph),
         nid=nid,
         robot=robot,
         arena=arena,
     )
 
 
-def _vectors(path: str, key: str, values: list[tuple[float, float] | None]) -> Real:
-    for row, value in enumerate(values):
-        if value is None:
-            raise InputError(f"{path}: agents[id {agents.number(row)}].{key}: missing")
-    return np.array(values, dtype=np.float64)
+def _law(scenario: Scenario, target: TargetFormation) -> AngleLaw | ComparisonLaw:
+    if scenario.law.name == "angle":
+        return AngleLaw(target, scenario.law.first_follower)
+    return ComparisonLaw(target, scenario.law.name)
+
+
+def _estimator(path: str, scenario: Scenario, graph: SensingGraph) -> VelocityEstimator | None:
+    if scenario.velocity_known_by == "all":
+        return None
+    table = scenario.communication
+    edges = graph.edges if table.edges is None else agents.rows(table.edges)
+    with located(path, "communication.edges"):
+        return VelocityEstimator(graph.n, edges, table.gain_per_s)
+
+
+def _sensor(scenario: Scenario, graph: SensingGraph) -> Sensor:
+    return Sensor(graph.edges, scenario.sensor.position_noise_m, np.radians(scenario.sensor.bearing_noise_deg))
 
 
 def _robot(scenario: Scenario) -> RobotModel:
@@ -140,55 +162,42 @@ def _robot(scenario: Scenario) -> RobotModel:
     )
 
 
-def _angles(path: str, scenario: Scenario, target: TargetFormation) -> tuple[AngleSet, Real]:
-    listed = scenario.target.angles_deg
-    if not listed:
-        angles = AngleSet.of_followers(target.graph)
-        return angles, angles.measure(target.positions)
-    triples = []
-    for name in listed:
-        match = re.fullmatch(r"\s*(\d+)\s*;\s*(\d+)\s*,\s*(\d+)\s*", name)
-        if match is None:
-            raise InputError(f"{path}: target.angles_deg: expected a name as in '3;2,4', got {name!r}")
-        triple = [int(number) for number in match.groups()]
-        for number in triple:
-            if not 1 <= number <= target.graph.n:
-                raise InputError(
-                    f"{path}: target.angles_deg: {name!r} names agent {number} outside 1..{target.graph.n}"
-                )
-        triples.append(agents.rows(triple))
-    with located(path, "target.angles_deg"):
-        angles = AngleSet(np.array(triples))
-    exact = angles.measure(target.positions)
-    for name, degrees, radians in zip(listed, listed.values(), exact, strict=True):
-        difference = abs(np.degrees(wrap(np.radians(degrees) - radians)))
-        if not difference <= PRINTED_DEGREES + 1e-9:
-            raise InputError(
-                f"{path}: target.angles_deg.{name!r}: the target positions have {np.degrees(radians):.4f} degrees, "
-                f"got {degrees:g}"
-            )
-    return angles, exact
-
-
-def _phases(path: str, scenario: Scenario, duration: float | None) -> tuple[Phase, ...]:
+def _phases(path: str, scenario: Scenario, target: TargetFormation, duration: float | None) -> tuple[Phase, ...]:
+    """The maneuver, cut or extended to ``duration``; one phase named after the law's aim where no phases are given."""
     if duration is not None and not (np.isfinite(duration) and duration > 0.0):
         raise InputError(f"--duration: expected a positive number of seconds, got {duration:g}")
-    stationary = scenario.law.first_follower == "stationary"
+    deltas = _displacements(path, scenario, target)
     if not scenario.phases:
-        if not stationary:
-            raise InputError(f"{path}: law.first_follower: {scenario.law.first_follower!r} needs phases to follow")
-        return (Phase("shape", duration or scenario.duration_s or 0.0),)
+        return (Phase("shape", duration or scenario.duration_s or 0.0, delta=deltas[0]),)
     phases, elapsed = [], 0.0
-    for number, table in enumerate(scenario.phases, start=1):
-        if table.displacement_m is None and not stationary:
-            raise InputError(f"{path}: phases[{number}].displacement_m: missing")
-        if table.displacement_m is not None and not any(table.displacement_m):
-            raise InputError(f"{path}: phases[{number}].displacement_m: agents 1 and 2 must not be sent to one place")
+    for table, delta in zip(scenario.phases, deltas, strict=True):
         length = table.duration_s
         if duration is not None:
-            last = number == len(scenario.phases)
+            last = table is scenario.phases[-1]
             length = duration - elapsed if last else min(length, duration - elapsed)
         if length > 0.0:
-            phases.append(Phase(table.name, length, table.velocity_m_s, table.displacement_m))
+            phases.append(Phase(table.name, length, table.velocity_m_s, delta))
         elapsed += length
     return tuple(phases)
+
+
+def _displacements(path: str, scenario: Scenario, target: TargetFormation) -> list[tuple[float, float] | None]:
+    """delta_12 of each phase: the scenario's, or that of p* for a comparison law."""
+    given = [phase.displacement_m for phase in scenario.phases] or [None]
+    if scenario.law.name != "angle":
+        if any(delta is not None for delta in given):
+            raise InputError(
+                f"{path}: phases.displacement_m: the {scenario.law.name} law takes its own from the target"
+            )
+        x, y = target.positions[agents.FIRST_FOLLOWER] - target.positions[agents.LEADER]
+        return [(float(x), float(y))] * len(given)
+    if scenario.law.first_follower == "stationary":
+        return given
+    if not scenario.phases:
+        raise InputError(f"{path}: law.first_follower: {scenario.law.first_follower!r} needs phases to follow")
+    for number, delta in enumerate(given, start=1):
+        if delta is None:
+            raise InputError(f"{path}: phases[{number}].displacement_m: missing")
+        if not any(delta):
+            raise InputError(f"{path}: phases[{number}].displacement_m: agents 1 and 2 must not be sent to one place")
+    return given

@@ -118,6 +118,10 @@ def validate(data: Mapping[str, Any], file: str) -> Scenario:
     for number in range(1, len(seen) + 1):
         if number not in seen:
             raise InputError(f"{file}: agents: agent {number} is missing, agents are numbered 1 to {len(seen)}")
+    if (scenario.random_formation is None) == (not scenario.agents):
+        raise InputError(f"{file}: agents: expected either agents or random_formation")
+    if scenario.agents and len(scenario.agents) < 3:
+        raise InputError(f"{file}: agents: expected at least 3, got {len(scenario.agents)}")
     if bool(scenario.phases) == (scenario.duration_s is not None):
         raise InputError(f"{file}: duration_s: expected either duration_s or phases")
     return scenario

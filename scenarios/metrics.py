@@ -91,11 +91,9 @@ def settling_time(t: Real, error_sum: Real, bound: float) -> float | None:
     return float(t[above[-1] + 1])
 
 
-def predicted_ends(experiment: Experiment) -> Real:
-    """(P, n, 2) the end configuration of each phase that the theory predicts, metres."""
-    pairs = pair_ends(
-        experiment.start[: agents.FIRST_ORDINARY], experiment.phases, experiment.scenario.law.first_follower
-    )
+def predicted_ends(experiment: Experiment, start: Real) -> Real:
+    """(P, n, 2) the end configuration of each phase that the theory predicts from a start (n, 2), metres."""
+    pairs = pair_ends(start[: agents.FIRST_ORDINARY], experiment.phases, experiment.first_follower)
     return np.stack([end_configuration(experiment.target, leader, first) for leader, first in pairs])
 
 
@@ -104,7 +102,8 @@ def _phase_ends(
 ) -> tuple[PhaseEnd, ...]:
     ends = []
     finished = np.isfinite(trajectory.points[-1]).all()
-    for index, (phase, predicted) in enumerate(zip(experiment.phases, predicted_ends(experiment), strict=True)):
+    predictions = predicted_ends(experiment, trajectory.points[0])
+    for index, (phase, predicted) in enumerate(zip(experiment.phases, predictions, strict=True)):
         rows = np.flatnonzero(trajectory.phase == index)
         if not rows.size or (rows[-1] == len(trajectory.t) - 1 and not finished):
             break

@@ -32,7 +32,7 @@ def print_library(console: Console) -> None:
     console.print(table)
 
 
-def print_experiment(console: Console, experiment: Experiment) -> None:
+def print_experiment(console: Console, experiment: Experiment, seed: int) -> None:
     """Graph, angles, assumptions, predicted rates and end configurations."""
     graph, target = experiment.graph, experiment.target
     console.print(f"[bold]{experiment.file.name}[/bold]: {experiment.scenario.title}")
@@ -47,11 +47,11 @@ def print_experiment(console: Console, experiment: Experiment) -> None:
         f"  2  strongly nondegenerate target: holds, flattest triangle {flattest}, "
         f"|sin| = {sine[worst]:.3f} at {agents.name(graph.followers[worst])}"
     )
-    start = experiment.start
+    start = experiment.initial_points(seed)
     distance = float(np.linalg.norm(start[agents.FIRST_FOLLOWER] - start[agents.LEADER]))
     console.print(f"  p_1(0) != p_2(0): holds, {distance:.3f} m apart\n")
     rates = decay_rates(target)
-    ends = predicted_ends(experiment)
+    ends = predicted_ends(experiment, start)
     table = _table("agent", "senses", "depth", "follower angle (deg)", "rate (1/s)", "start (m)", "end (m)")
     for row in range(graph.n):
         follower = row - agents.FIRST_ORDINARY

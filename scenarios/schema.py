@@ -34,7 +34,8 @@ class AgentTable(Table):
     heading_deg: Number | None = None
     """Initial heading; drawn from the run's seed where absent."""
     target: Vector | None = None
-    """Its place in one configuration that has the desired shape, m."""
+    """Its place in one configuration that has the desired shape, m; given for all agents, or for none and then the
+    shape is defined by ``target.angles_deg``."""
 
 
 class TargetTable(Table):
@@ -42,7 +43,8 @@ class TargetTable(Table):
 
     angles_deg: dict[str, Number] = Field(default_factory=dict)
     """Angles that are measured and compared, named "vertex;from,to", counter-clockwise. Where the agents have target
-    positions, each must agree with them within half a unit of its second decimal."""
+    positions, each must agree with them within half a unit of its second decimal; where they have none, two angles of
+    each follower's triangle define the shape."""
 
 
 class PhaseTable(Table):
@@ -59,7 +61,23 @@ class PhaseTable(Table):
 class LawTable(Table):
     """The formation law."""
 
+    name: Literal["angle", "displacement", "bearing", "distance"] = "angle"
+    """The paper's law, or one of the families that it weighs itself against."""
     first_follower: Literal["stationary", "displacement", "distance", "bearing"] = "stationary"
+    """What the first follower of the angle law does with the phases' displacement."""
+    activation: Literal["simultaneous", "sequential"] = "simultaneous"
+    """Whether each follower waits until its neighbours have settled (Lemma 3)."""
+    settled_m: Positive = 0.005
+    """Distance from its place below which a follower counts as settled, for sequential activation."""
+
+
+class CommunicationTable(Table):
+    """How agents learn v_r when only the leader knows it."""
+
+    edges: tuple[tuple[AgentNumber, AgentNumber], ...] | None = None
+    """(receiver, sender) pairs; each agent hears those that it senses where absent."""
+    gain_per_s: Positive = 2.0
+    """Rate at which an agent moves its estimate to the mean of those that it hears."""
 
 
 class RobotTable(Table):
@@ -92,10 +110,32 @@ class PlantTable(Table):
 
 
 class SensorTable(Table):
-    """Noise of the relative position measurements."""
+    """Errors of what the robots measure."""
 
     position_noise_m: NotNegative = 0.0
     bearing_noise_deg: NotNegative = 0.0
+    compass_bias_deg: NotNegative = 0.0
+    """Standard deviation of each robot's constant compass error."""
+
+
+class RandomStartTable(Table):
+    """Initial projected points drawn uniformly from a rectangle, by the run's seed."""
+
+    x_m: Vector = (-1.4, 1.4)
+    y_m: Vector = (-0.8, 0.8)
+    min_separation_m: NotNegative = 0.2
+
+
+class RandomFormationTable(Table):
+    """A random leader-first-follower graph and target, in place of ``agents``. Starts need ``random_start``."""
+
+    agents: Annotated[int, Field(strict=True, ge=3)]
+    seed: Annotated[int, Field(strict=True, ge=0)]
+    radius_m: Positive = 1.0
+    """Of the disc that holds the target."""
+    min_separation_m: NotNegative = 0.0
+    min_angle_deg: Annotated[float, Field(strict=True, gt=0.0, lt=60.0)] = 15.0
+    """Every interior angle stays this far from a degenerate triangle."""
 
 
 class GoalTable(Table):
@@ -113,10 +153,17 @@ class Scenario(Table):
     """Where the experiment comes from."""
     duration_s: Positive | None = None
     """Length of the run; absent where phases are given."""
-    agents: Annotated[tuple[AgentTable, ...], Field(min_length=3)]
+    agents: tuple[AgentTable, ...] = ()
+    """At least three, with the numbers 1..n, unless ``random_formation`` is given."""
+    random_formation: RandomFormationTable | None = None
+    random_start: RandomStartTable | None = None
+    """In place of the agents' own ``start``."""
     target: TargetTable = TargetTable()
     law: LawTable = LawTable()
     phases: tuple[PhaseTable, ...] = ()
+    velocity_known_by: Literal["all", "leader"] = "all"
+    """Whether v_r is broadcast, or known to the leader alone and spread over the communication graph."""
+    communication: CommunicationTable = CommunicationTable()
     robot: RobotTable = RobotTable()
     arena: ArenaTable = ArenaTable()
     plant: PlantTable = PlantTable()

@@ -7,13 +7,14 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from formation import Phase
+from formation import Phase, SequentialActivation
 from robots import make_world
 from robots.sensors import disturb
 from scenarios.experiment import Experiment
 from scenarios.trajectory import Trajectory
 
 Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 
 class Controller:
@@ -21,37 +22,74 @@ class Controller:
 
     A law gets relative positions in body frames and, only if it says that it needs one, a compass. It never sees a
     position or a heading. The common velocity v_r is stated in the common frame, so following it takes a compass too.
+
+    Attributes:
+        active: (..., n) which agents follow the law; the others hold still but for v_r.
     """
 
     def __init__(self, experiment: Experiment, generators: Sequence[np.random.Generator], batch: tuple[int, ...]):
         self._law = experiment.law
         self._sensor = experiment.sensor
+        self._estimator = experiment.estimator
         self._generators = generators
         self._batch = batch
         self._noise: tuple[Real, Real] | None = None
-        self._velocity = 0j
+        self._commanded = np.zeros(2)
+        self._velocity: Real | None = None
         self._delta: Real | None = None
+        scenario = experiment.scenario
+        self._compass_error = self._draw_compass(np.radians(scenario.sensor.compass_bias_deg), experiment.n)
+        self._activation = None
+        self.active = np.ones((*batch, experiment.n), dtype=bool)
+        if scenario.law.activation == "sequential":
+            self._activation = SequentialActivation(experiment.target, scenario.law.settled_m, batch)
+            self.active = self._activation.active
+        if self._estimator is not None:
+            self._velocity = np.zeros((*batch, experiment.n, 2))
 
     def begin_phase(self, phase: Phase) -> None:
         """Take the commands of a phase."""
-        self._velocity = complex(*phase.velocity)
+        self._commanded = np.array(phase.velocity)
         self._delta = None if phase.delta is None else np.array(phase.delta)
+        if self._estimator is None:
+            self._velocity = self._commanded if self._commanded.any() else None
 
-    def begin_period(self) -> None:
-        """Draw the measurement noise that holds for one control period."""
+    def begin_period(self, points: Real, headings: Real, period: float) -> None:
+        """Do what happens once per control period: draw noise, exchange estimates of v_r, activate followers."""
         noise = [self._sensor.noise(rng) for rng in self._generators]
         if noise[0] is not None:
             turn, offset = (np.stack(part).reshape(*self._batch, -1, 2) for part in zip(*noise, strict=True))
             self._noise = turn, offset
+        if self._estimator is not None and self._velocity is not None:
+            self._velocity = self._estimator.step(self._velocity, self._commanded, period)
+        if self._activation is not None:
+            self._activation.update(self._feedback(points, headings))
 
     def __call__(self, points: Real, headings: Real) -> Real:
-        relative = disturb(self._sensor.measure(points, headings), self._noise)
-        compass = np.conj(headings.view(np.complex128)) if self._law.needs_compass or self._velocity else None
-        given = compass.view(np.float64) if compass is not None and self._law.needs_compass else None
-        velocity = self._law(relative, given, self._delta)
-        if compass is not None and self._velocity:
-            velocity += (self._velocity * compass).view(np.float64)
+        velocity = self._feedback(points, headings)
+        if self._activation is not None:
+            velocity *= self.active[..., None]
+        if self._velocity is not None:
+            common = np.ascontiguousarray(self._velocity).view(np.complex128)
+            velocity += (common * self._compass(headings)).view(np.float64)
         return velocity
+
+    def _feedback(self, points: Real, headings: Real) -> Real:
+        """The law's own velocities, without v_r."""
+        relative = disturb(self._sensor.measure(points, headings), self._noise)
+        compass = self._compass(headings).view(np.float64) if self._law.needs_compass else None
+        return self._law(relative, compass, self._delta)
+
+    def _compass(self, headings: Real) -> Complex:
+        """(..., n, 1) the common x axis in each body frame as a complex number, as each robot's compass shows it."""
+        compass = np.conj(headings.view(np.complex128))
+        return compass if self._compass_error is None else compass * self._compass_error
+
+    def _draw_compass(self, deviation: float, n: int) -> Complex | None:
+        if deviation == 0.0:
+            return None
+        errors = np.stack([rng.normal(0.0, deviation, n) for rng in self._generators])
+        return np.exp(1j * errors).reshape(*self._batch, n, 1)
 
 
 def simulate(
@@ -72,11 +110,14 @@ def simulate(
     seeds = [seed] if isinstance(seed, int) else list(seed)
     batch = () if isinstance(seed, int) else (len(seeds),)
     generators = [np.random.default_rng(s) for s in seeds]
-    theta = np.stack([initial_headings(experiment, rng) for rng in generators]).reshape(*batch, experiment.n)
+    points_0, theta_0 = (
+        np.stack(part).reshape(*batch, experiment.n, -1)
+        for part in zip(*(experiment.starts.draw(rng) for rng in generators), strict=True)
+    )
     world = make_world(
         experiment.plant,
-        np.broadcast_to(experiment.start, (*batch, experiment.n, 2)).copy(),
-        theta,
+        points_0,
+        theta_0[..., 0],
         nid=experiment.nid,
         robot=experiment.robot,
         saturation=experiment.scenario.robot.saturation,
@@ -90,33 +131,27 @@ def simulate(
     points = np.empty((total + 1, *world.points.shape))
     wheel_speeds = np.zeros_like(points) * world.wheel_speeds
     phase_index = np.zeros(total + 1, dtype=np.intp)
-    t[0], poses[0], points[0] = 0.0, world.poses, world.points
+    active = np.empty((total + 1, *controller.active.shape), dtype=bool)
+    t[0], poses[0], points[0], active[0] = 0.0, world.poses, world.points, controller.active
     done, start = 0, 0.0
     for index, (phase, count, period) in enumerate(schedule):
         controller.begin_phase(phase)
         for step in range(1, count + 1):
-            controller.begin_period()
+            controller.begin_period(world.points, world.headings, period)
             world.step(controller, period)
             done += 1
             t[done] = start + phase.duration * (step / count)
             poses[done], points[done], wheel_speeds[done] = world.poses, world.points, world.wheel_speeds
-            phase_index[done] = index
+            phase_index[done], active[done] = index, controller.active
             if on_period is not None:
                 on_period(done, total)
             if not np.isfinite(world.poses.sum()):
-                end = done + 1
-                return Trajectory(t[:end], poses[:end], points[:end], wheel_speeds[:end], phase_index[:end])
+                return Trajectory(t, poses, points, wheel_speeds, phase_index, active).until(done + 1)
         start += phase.duration
-    return Trajectory(t, poses, points, wheel_speeds, phase_index)
+    return Trajectory(t, poses, points, wheel_speeds, phase_index, active)
 
 
 def periods(phase: Phase, control_period: float) -> tuple[int, float]:
     """How many control periods fit a phase, and their length, seconds, stretched so that they fit exactly."""
     count = max(1, round(phase.duration / control_period))
     return count, phase.duration / count
-
-
-def initial_headings(experiment: Experiment, rng: np.random.Generator) -> Real:
-    """(n,) headings, radians: the scenario's, and uniform over the circle where it leaves them to the seed."""
-    drawn = rng.uniform(-np.pi, np.pi, experiment.n)
-    return np.where(np.isnan(experiment.headings), drawn, experiment.headings)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +26,7 @@ class Trajectory:
         wheel_speeds: (T, ..., n, 2) left and right wheel speeds during the period that ends at t, rad/s; NaN for a
             plant without wheels.
         phase: (T,) index of the phase that the period belongs to.
+        active: (T, ..., n) which agents follow the law; all but those that wait in sequential activation.
     """
 
     t: Real
@@ -33,22 +34,27 @@ class Trajectory:
     points: Real
     wheel_speeds: Real
     phase: NDArray[np.intp]
+    active: NDArray[np.bool_]
 
     def run(self, index: int) -> Trajectory:
         """One run of a batch with one batch dimension."""
-        return Trajectory(self.t, self.poses[:, index], self.points[:, index], self.wheel_speeds[:, index], self.phase)
+        return Trajectory(
+            self.t,
+            self.poses[:, index],
+            self.points[:, index],
+            self.wheel_speeds[:, index],
+            self.phase,
+            self.active[:, index],
+        )
+
+    def until(self, rows: int) -> Trajectory:
+        """The first ``rows`` rows."""
+        return Trajectory(*(getattr(self, field.name)[:rows] for field in fields(self)))
 
     def save(self, path: Path, angle_errors: Real) -> None:
         """Write ``trajectory.npz``, with the angle errors (T, m), radians, beside the states."""
-        np.savez_compressed(
-            path,
-            t=self.t,
-            poses=self.poses,
-            points=self.points,
-            wheel_speeds=self.wheel_speeds,
-            phase=self.phase,
-            angle_errors=angle_errors,
-        )
+        states = {field.name: getattr(self, field.name) for field in fields(self)}
+        np.savez_compressed(path, angle_errors=angle_errors, **states)
 
     @classmethod
     def read(cls, path: Path) -> Trajectory:
@@ -59,6 +65,6 @@ class Trajectory:
         """
         try:
             with np.load(path) as data:
-                return cls(data["t"], data["poses"], data["points"], data["wheel_speeds"], data["phase"])
+                return cls(*(data[field.name] for field in fields(cls)))
         except Exception as error:  # numpy and zipfile raise many kinds for damaged files
             raise InputError(f"{path}: cannot be read: {error}") from error
