@@ -25,5 +25,6 @@ from formation.prediction import Similarity as Similarity
 from formation.prediction import decay_rates as decay_rates
 from formation.prediction import end_configuration as end_configuration
 from formation.prediction import end_similarity as end_similarity
+from formation.prediction import fit_similarity as fit_similarity
 from formation.random_target import random_target as random_target
 from formation.target import TargetFormation as TargetFormation

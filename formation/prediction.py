@@ -66,6 +66,18 @@ def end_configuration(target: TargetFormation, leader: Real, first_follower: Rea
     return end_similarity(target, leader, first_follower)(target.positions)
 
 
+def fit_similarity(target: TargetFormation, points: Real) -> tuple[Real, Real, Real]:
+    """The similarity that carries the target closest to points (..., n, 2), in the sense of least squares.
+
+    Returns:
+        Scale (...), angle (...) in [0, 2 pi), radians, and centroid (..., 2) of the points, metres.
+    """
+    p, star = as_complex(points), as_complex(target.positions)
+    centred = star - star.mean()
+    factor = (p @ np.conj(centred)) / (np.abs(centred) ** 2).sum()
+    return np.abs(factor), np.mod(np.angle(factor), 2.0 * np.pi), as_vectors(p.mean(axis=-1))
+
+
 def decay_rates(target: TargetFormation) -> Real:
     """(n - 2,) rate sin^2(a_k), 1/s, at which |p_k - p_k_dagger| decays once k's neighbours have settled.
 

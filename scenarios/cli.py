@@ -78,7 +78,8 @@ def run(
 def _console() -> Console:
     from rich.console import Console
 
-    return Console(highlight=False, soft_wrap=True)
+    # A pipe or a file has no width: tables keep all their columns there.
+    return Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 160)
 
 
 def main() -> None:

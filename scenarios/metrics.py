@@ -8,9 +8,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from formation import agents, end_configuration, pair_ends
 from robots.testbed import Separation, Verdict, collision_centres, judge, separation
 from scenarios.experiment import Experiment
+from scenarios.tracking import Tracking, measured_late_rates, predicted_ends, track
 from scenarios.trajectory import Trajectory
 
 Real = NDArray[np.float64]
@@ -47,6 +47,8 @@ class Metrics:
         axle_error_sum: (T,) the same of the axle centres.
         settling_time: seconds after which ``error_sum`` stays below the goal; None if it does not.
         separation: of the collision centres.
+        tracking: of scale, orientation and translation.
+        late_rates: of the followers' distances, 1/s, as measured; None where there is too little to fit.
         phases: the state at the end of each phase that the run completed.
     """
 
@@ -56,6 +58,8 @@ class Metrics:
     settling_time: float | None
     separation: Separation
     verdict: Verdict
+    tracking: Tracking
+    late_rates: list[float | None]
     phases: tuple[PhaseEnd, ...]
     outcome: Outcome
 
@@ -67,6 +71,7 @@ def measure(experiment: Experiment, trajectory: Trajectory) -> Metrics:
     axle_errors = angles.errors(trajectory.poses[..., :2], targets)
     error_sum = np.abs(errors).sum(axis=-1)
     axle_sum = np.abs(axle_errors).sum(axis=-1)
+    tracking = track(experiment, trajectory)
     return Metrics(
         angle_errors=errors,
         error_sum=error_sum,
@@ -76,7 +81,9 @@ def measure(experiment: Experiment, trajectory: Trajectory) -> Metrics:
         verdict=judge(
             trajectory.t, trajectory.poses, trajectory.wheel_speeds, experiment.arena, experiment.robot.drive
         ),
-        phases=_phase_ends(experiment, trajectory, errors, axle_errors),
+        tracking=tracking,
+        late_rates=measured_late_rates(experiment, trajectory),
+        phases=_phase_ends(experiment, trajectory, errors, axle_errors, tracking),
         outcome=_outcome(trajectory, error_sum, experiment.goal),
     )
 
@@ -91,14 +98,8 @@ def settling_time(t: Real, error_sum: Real, bound: float) -> float | None:
     return float(t[above[-1] + 1])
 
 
-def predicted_ends(experiment: Experiment, start: Real) -> Real:
-    """(P, n, 2) the end configuration of each phase that the theory predicts from a start (n, 2), metres."""
-    pairs = pair_ends(start[: agents.FIRST_ORDINARY], experiment.phases, experiment.first_follower)
-    return np.stack([end_configuration(experiment.target, leader, first) for leader, first in pairs])
-
-
 def _phase_ends(
-    experiment: Experiment, trajectory: Trajectory, errors: Real, axle_errors: Real
+    experiment: Experiment, trajectory: Trajectory, errors: Real, axle_errors: Real, tracking: Tracking
 ) -> tuple[PhaseEnd, ...]:
     ends = []
     finished = np.isfinite(trajectory.points[-1]).all()
@@ -108,8 +109,7 @@ def _phase_ends(
         if not rows.size or (rows[-1] == len(trajectory.t) - 1 and not finished):
             break
         row = int(rows[-1])
-        distances = np.linalg.norm(trajectory.points[row] - predicted, axis=-1)
-        ends.append(PhaseEnd(phase.name, row, errors[row], axle_errors[row], predicted, distances))
+        ends.append(PhaseEnd(phase.name, row, errors[row], axle_errors[row], predicted, tracking.distances[row]))
     return tuple(ends)
 
 

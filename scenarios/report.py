@@ -8,10 +8,11 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from formation import agents, decay_rates, end_similarity
+from formation import agents, collision_margins, decay_rates, end_similarity
 from scenarios.experiment import Experiment
+from scenarios.forecast import NEAR, PhaseForecast, forecast
 from scenarios.load import library, load
-from scenarios.metrics import predicted_ends
+from scenarios.tracking import predicted_late_rates
 
 
 def _table(*columns: str, title: str | None = None) -> Table:
@@ -34,43 +35,96 @@ def print_library(console: Console) -> None:
 
 def print_experiment(console: Console, experiment: Experiment, seed: int) -> None:
     """Graph, angles, assumptions, predicted rates and end configurations."""
-    graph, target = experiment.graph, experiment.target
     console.print(f"[bold]{experiment.file.name}[/bold]: {experiment.scenario.title}")
     if experiment.file.description:
-        console.print(experiment.file.description, style="dim", highlight=False)
+        console.print(experiment.file.description, style="dim", highlight=False, markup=False)
+    start = experiment.initial_points(seed)
+    predicted = forecast(experiment, start)
+    _print_assumptions(console, experiment, start)
+    _print_agents(console, experiment, start, predicted[-1].end)
+    _print_forecast(console, experiment, predicted)
+    table = _table("angle", "target (deg)")
+    for name, value in zip(experiment.angles.names, np.degrees(experiment.target_angles), strict=True):
+        table.add_row(name, f"{value:.4f}")
+    console.print("\n[bold]Angles, counter-clockwise, alpha(vertex;from,to)[/bold]")
+    console.print(table)
+
+
+def _print_assumptions(console: Console, experiment: Experiment, start: Any) -> None:
+    graph, target = experiment.graph, experiment.target
     sine = np.abs(np.sin(target.follower_angles))
     worst = int(sine.argmin())
     flattest = tuple(agents.numbers(graph.triangles[worst]).tolist())
+    distance = float(np.linalg.norm(start[agents.FIRST_FOLLOWER] - start[agents.LEADER]))
     console.print("\n[bold]Assumptions[/bold]")
-    console.print(f"  1  leader-first-follower sensing graph: {graph.n} agents, {len(graph.edges)} edges, holds")
+    console.print(
+        f"  1  leader-first-follower sensing graph: holds, {graph.n} agents, {len(graph.edges)} edges, "
+        f"depth {graph.depth.max()}"
+    )
     console.print(
         f"  2  strongly nondegenerate target: holds, flattest triangle {flattest}, "
         f"|sin| = {sine[worst]:.3f} at {agents.name(graph.followers[worst])}"
     )
-    start = experiment.initial_points(seed)
-    distance = float(np.linalg.norm(start[agents.FIRST_FOLLOWER] - start[agents.LEADER]))
     console.print(f"  p_1(0) != p_2(0): holds, {distance:.3f} m apart\n")
-    rates = decay_rates(target)
-    ends = predicted_ends(experiment, start)
-    table = _table("agent", "senses", "depth", "follower angle (deg)", "rate (1/s)", "start (m)", "end (m)")
+
+
+def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any) -> None:
+    graph, target = experiment.graph, experiment.target
+    rates, late = decay_rates(target), predicted_late_rates(experiment)
+    margins = collision_margins(target, start, end)
+    table = _table(
+        "agent",
+        "senses",
+        "depth",
+        "follower angle (deg)",
+        "sin^2 (1/s)",
+        "late rate (1/s)",
+        "start (m)",
+        "end (m)",
+        "margin of (c3) (m)",
+    )
     for row in range(graph.n):
         follower = row - agents.FIRST_ORDINARY
         senses = [str(agents.number(i)) for k, i in graph.edges if k == row]
+        cells = ["-"] * 4
+        if follower >= 0:
+            cells = [
+                f"{np.degrees(target.follower_angles[follower]):.2f}",
+                f"{rates[follower]:.4f}",
+                "-" if late is None else f"{late[follower]:.4f}",
+                f"{margins[follower]:+.3f}",
+            ]
         table.add_row(
             str(agents.number(row)),
             ", ".join(senses) or "-",
             str(graph.depth[row]),
-            f"{np.degrees(target.follower_angles[follower]):.2f}" if follower >= 0 else "-",
-            f"{rates[follower]:.4f}" if follower >= 0 else "-",
+            *cells[:3],
             _point(start[row]),
-            _point(ends[-1, row]),
+            _point(end[row]),
+            cells[3],
         )
     console.print(table)
-    table = _table("phase", "until (s)", "v_r (m/s)", "delta (m)", "scale c", "angle (deg)", "translation (m)")
+    console.print(
+        "(c3): where the margin is positive, a follower that starts when its neighbours have settled avoids both"
+    )
+
+
+def _print_forecast(console: Console, experiment: Experiment, predicted: list[PhaseForecast]) -> None:
+    table = _table(
+        "phase",
+        "until (s)",
+        "v_r (m/s)",
+        "delta (m)",
+        "scale c",
+        "theta (deg)",
+        "xi (m)",
+        "angle error sum (rad)",
+        f"within {NEAR:g} m after (s)",
+    )
     until = 0.0
-    for phase, end in zip(experiment.phases, ends, strict=True):
+    for phase, ahead in zip(experiment.phases, predicted, strict=True):
         until += phase.duration
-        similarity = end_similarity(target, end[agents.LEADER], end[agents.FIRST_FOLLOWER])
+        similarity = end_similarity(experiment.target, *ahead.end[: agents.FIRST_ORDINARY])
         table.add_row(
             phase.name,
             f"{until:g}",
@@ -79,13 +133,10 @@ def print_experiment(console: Console, experiment: Experiment, seed: int) -> Non
             f"{similarity.scale:.4f}",
             f"{np.degrees(similarity.angle):.2f}",
             _point(similarity.translation),
+            _value(ahead.error_sum, ".2e"),
+            _value(ahead.arrival, ".1f"),
         )
-    console.print("\n[bold]Predicted end p = c R(angle) p* + translation[/bold]")
-    console.print(table)
-    table = _table("angle", "target (deg)")
-    for name, value in zip(experiment.angles.names, np.degrees(experiment.target_angles), strict=True):
-        table.add_row(name, f"{value:.4f}")
-    console.print("\n[bold]Angles, counter-clockwise, alpha(vertex;from,to)[/bold]")
+    console.print("\n[bold]Predicted end of each phase, c R(theta) p* + xi, for ideal single integrators[/bold]")
     console.print(table)
 
 
@@ -105,18 +156,9 @@ def print_result(console: Console, result: dict[str, Any]) -> None:
     table.add_row("sum of |error|", "", "", _value(total, ".2e"), _value(axle, ".2e"), style="bold")
     console.print(table)
     console.print()
-    table = _table("phase", "until (s)", "angle error sum (rad)", "axle sum (rad)", "farthest from prediction (m)")
-    for phase in result["phases"]:
-        farthest = max(phase["distance_m"], default=None, key=lambda d: d if d is not None else np.inf)
-        table.add_row(
-            phase["name"],
-            f"{phase['end_s']:.1f}",
-            _value(phase["angle_error_sum_rad"], ".2e"),
-            _value(phase["axle_angle_error_sum_rad"], ".2e"),
-            _value(farthest, ".2e"),
-        )
-    console.print(table)
-    console.print()
+    _print_phases(console, result)
+    if result["phases"]:
+        _print_ends(console, result)
     settled = result["settling_time_s"]
     settling = "never" if settled is None else f"after {settled:.1f} s"
     console.print(f"settled below {result['goal_rad']:g} rad: {settling}")
@@ -133,13 +175,59 @@ def print_result(console: Console, result: dict[str, Any]) -> None:
     console.print(f"outcome: [bold]{result['outcome'].replace('_', ' ')}[/bold]")
 
 
+def _print_phases(console: Console, result: dict[str, Any]) -> None:
+    table = _table(
+        "phase",
+        "until (s)",
+        "angle error sum (rad)",
+        "axle sum (rad)",
+        "scale error",
+        "orientation error (rad)",
+        "translation error (m)",
+    )
+    for phase in result["phases"]:
+        table.add_row(
+            phase["name"],
+            f"{phase['end_s']:.1f}",
+            _value(phase["angle_error_sum_rad"], ".2e"),
+            _value(phase["axle_angle_error_sum_rad"], ".2e"),
+            _value(phase["scale_error"], "+.1e"),
+            _value(phase["orientation_error_rad"], "+.1e"),
+            _value(phase["translation_error_m"], ".1e"),
+        )
+    console.print(table)
+    console.print()
+
+
+def _print_ends(console: Console, result: dict[str, Any]) -> None:
+    """Predicted beside measured: the end of the last phase and the late decay rates."""
+    last, rates = result["phases"][-1], result["late_rates_per_s"]
+    table = _table(
+        "agent", "predicted end (m)", "measured (m)", "distance (m)", "predicted late rate (1/s)", "measured (1/s)"
+    )
+    for row, (predicted, measured, distance) in enumerate(
+        zip(last["predicted_m"], last["measured_m"], last["distance_m"], strict=True)
+    ):
+        follower = row - agents.FIRST_ORDINARY
+        late = [rates[kind][follower] if follower >= 0 and rates[kind] else None for kind in ("predicted", "measured")]
+        table.add_row(
+            str(agents.number(row)),
+            _point(predicted),
+            _point(measured),
+            _value(distance, ".1e"),
+            *(_value(rate, ".3f") for rate in late),
+        )
+    console.print(table)
+    console.print()
+
+
 def _describe(violation: dict[str, Any]) -> str:
     first = violation["first"]
     who = " and ".join(str(agent) for agent in first["agents"])
     where = f"first at {first['time_s']:.2f} s, {_point(first['place_m'])} m, {violation['steps']} steps"
     match violation["kind"]:
         case "floor":
-            return f"agent {who} leaves the floor by {first['value']:.3f} m; {where}"
+            return f"agent {who} leaves the floor; {where}"
         case "collision":
             return f"agents {who} come within {first['value']:.3f} m; {where}"
         case _:

@@ -12,6 +12,7 @@ from formation import agents
 from robots.testbed import Violation
 from scenarios.experiment import Experiment
 from scenarios.metrics import Metrics
+from scenarios.tracking import predicted_late_rates
 from scenarios.trajectory import Trajectory
 
 SCHEMA_VERSION = 1
@@ -58,6 +59,10 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
             "accepted": metrics.verdict.accepted,
             "violations": [_violation(v) for v in metrics.verdict.violations],
         },
+        "late_rates_per_s": {
+            "predicted": None if (rates := predicted_late_rates(experiment)) is None else rates.tolist(),
+            "measured": metrics.late_rates,
+        },
         "phases": [
             {
                 "name": end.name,
@@ -66,6 +71,9 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
                 "axle_angle_errors_rad": [_number(e) for e in end.axle_angle_errors],
                 "angle_error_sum_rad": _number(np.abs(end.angle_errors).sum()),
                 "axle_angle_error_sum_rad": _number(np.abs(end.axle_angle_errors).sum()),
+                "scale_error": _number(metrics.tracking.scale[end.row]),
+                "orientation_error_rad": _number(metrics.tracking.orientation[end.row]),
+                "translation_error_m": _number(metrics.tracking.translation[end.row]),
                 "predicted_m": end.predicted.tolist(),
                 "measured_m": trajectory.points[end.row].tolist(),
                 "distance_m": [_number(d) for d in end.distances],
