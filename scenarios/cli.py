@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from scenarios.errors import InputError, did_you_mean
+from scenarios.run_folder import write_text
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -73,6 +74,22 @@ def run(
     experiment = open_experiment(scenario, changes, duration)
     if not run_to_folder(experiment, seed, out, _console()):
         raise SystemExit(MISSED)
+
+
+@cli.command()
+@click.option("--starts", default=1000, show_default=True, type=click.IntRange(min=1), help="Random starts per law.")
+@click.option("--markdown", type=click.Path(path_type=Path, dir_okay=False), help="Write the table to this file too.")
+def laws(starts: int, markdown: Path | None) -> None:
+    """Compare the angle law with the displacement, bearing and distance laws."""
+    from scenarios import laws as comparison
+    from scenarios.report import print_laws, progress_bar
+
+    console = _console()
+    with progress_bar(console, "laws") as advance:
+        shares = comparison.compare(starts, advance)
+    print_laws(console, shares)
+    if markdown is not None:
+        write_text(markdown, comparison.markdown(shares, starts), "--markdown")
 
 
 def _console() -> Console:

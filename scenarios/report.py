@@ -2,23 +2,52 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from formation import agents, collision_margins, decay_rates, end_similarity
 from scenarios.experiment import Experiment
 from scenarios.forecast import NEAR, PhaseForecast, forecast
+from scenarios.laws import COMPASS_BIAS_DEG, Share
 from scenarios.load import library, load
 from scenarios.tracking import predicted_late_rates
+
+LEFT = ("scenario", "title", "angle", "agent", "senses", "phase", "plant", "law", "measures", "frame", "fixes")
+"""Columns of text; all others hold numbers and are aligned right."""
+
+PROGRESS_STEPS = 200
+"""Steps between two updates of a progress bar."""
+
+
+@contextmanager
+def progress_bar(console: Console, name: str) -> Iterator[Callable[[int, int], None]]:
+    """A progress bar that vanishes when the work is done; the block calls what it gets with (done, total)."""
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.percentage:.0f} %"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console, transient=True) as progress:
+        task = progress.add_task(name)
+
+        def advance(done: int, total: int) -> None:
+            if done % PROGRESS_STEPS == 0 or done == total:
+                progress.update(task, completed=done, total=total)
+
+        yield advance
 
 
 def _table(*columns: str, title: str | None = None) -> Table:
     table = Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for column in columns:
-        left = column in ("scenario", "title", "angle", "agent", "senses", "phase", "plant")
+        left = column in LEFT
         table.add_column(column, justify="left" if left else "right", no_wrap=column != "title")
     return table
 
@@ -72,6 +101,7 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
     graph, target = experiment.graph, experiment.target
     rates, late = decay_rates(target), predicted_late_rates(experiment)
     margins = collision_margins(target, start, end)
+    still = len(experiment.phases) == 1 and not any(experiment.phases[0].velocity)  # the premise of Lemma 3
     table = _table(
         "agent",
         "senses",
@@ -92,7 +122,7 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
                 f"{np.degrees(target.follower_angles[follower]):.2f}",
                 f"{rates[follower]:.4f}",
                 "-" if late is None else f"{late[follower]:.4f}",
-                f"{margins[follower]:+.3f}",
+                f"{margins[follower]:+.3f}" if still else "-",
             ]
         table.add_row(
             str(agents.number(row)),
@@ -137,6 +167,16 @@ def _print_forecast(console: Console, experiment: Experiment, predicted: list[Ph
             _value(ahead.arrival, ".1f"),
         )
     console.print("\n[bold]Predicted end of each phase, c R(theta) p* + xi, for ideal single integrators[/bold]")
+    console.print(table)
+
+
+def print_laws(console: Console, shares: list[Share]) -> None:
+    """The comparison of laws."""
+    biased = f"with {COMPASS_BIAS_DEG:g} deg compass error"
+    table = _table("law", "measures", "frame", "fixes", "right shape", biased)
+    for share in shares:
+        law = share.law
+        table.add_row(law.name, law.measures, law.frame, law.fixes, f"{share.exact:.1%}", f"{share.biased:.1%}")
     console.print(table)
 
 

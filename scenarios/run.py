@@ -5,17 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from scenarios import run_folder
 from scenarios.experiment import Experiment
 from scenarios.metrics import measure
-from scenarios.report import print_result
+from scenarios.report import print_result, progress_bar
 from scenarios.result import result
 from scenarios.simulation import simulate
-
-PROGRESS_PERIODS = 200
-"""Control periods between two updates of the progress bar."""
 
 
 def run_to_folder(experiment: Experiment, seed: int, out: Path | None, console: Console) -> bool:
@@ -29,13 +25,7 @@ def run_to_folder(experiment: Experiment, seed: int, out: Path | None, console: 
     """
     folder = out or run_folder.default_path(experiment.file.name, experiment.plant, seed)
     with run_folder.writing(folder) as scratch:
-        with _progress(console) as progress:
-            task = progress.add_task(experiment.file.name)
-
-            def advance(done: int, total: int) -> None:
-                if done % PROGRESS_PERIODS == 0 or done == total:
-                    progress.update(task, completed=done, total=total)
-
+        with progress_bar(console, experiment.file.name) as advance:
             trajectory = simulate(experiment, seed, advance)
         metrics = measure(experiment, trajectory)
         summary = result(experiment, seed, trajectory, metrics)
@@ -45,14 +35,3 @@ def run_to_folder(experiment: Experiment, seed: int, out: Path | None, console: 
     print_result(console, summary)
     console.print(f"run folder: {folder}")
     return metrics.outcome == "converged"
-
-
-def _progress(console: Console) -> Progress:
-    return Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.completed}/{task.total} periods"),
-        TimeRemainingColumn(),
-        console=console,
-        transient=True,
-    )

@@ -1,0 +1,97 @@
+"""The laws side by side: what each measures and needs, and how often it reaches the right shape from random starts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from scenarios.experiment import open_experiment
+from scenarios.simulation import simulate
+
+SCENARIO = "law-displacement"
+"""The comparison's robots: its target has a scale and an orientation, so every family can be asked for it."""
+
+DURATION = 120.0
+"""Seconds; long enough for the slowest law, so that a miss is a wrong equilibrium."""
+
+COMPASS_BIAS_DEG = 5.0
+"""Standard deviation of the compass errors in the second column of shares."""
+
+
+@dataclass(frozen=True)
+class Law:
+    """One row of the comparison."""
+
+    name: str
+    measures: str
+    frame: str
+    fixes: str
+
+
+LAWS = (
+    Law("angle", "relative positions", "any local frame", "shape"),
+    Law("displacement", "relative positions", "common (compass)", "shape, scale, orientation"),
+    Law("bearing", "bearings", "common (compass)", "shape, orientation"),
+    Law("distance", "relative positions", "any local frame", "distances along edges"),
+)
+
+
+@dataclass(frozen=True)
+class Share:
+    """How often a law reached the right shape.
+
+    Attributes:
+        law: the row.
+        exact, biased: share of the starts with an angle error sum below the scenario's goal at the end, with exact
+            compasses and with biased ones.
+    """
+
+    law: Law
+    exact: float
+    biased: float
+
+
+def compare(starts: int, on_progress: Callable[[int, int], None] | None = None) -> list[Share]:
+    """Run every law from the same ``starts`` random starts as ideal single integrators."""
+    cells = [(law, bias) for law in LAWS for bias in (0.0, COMPASS_BIAS_DEG)]
+    shares = []
+    for done, (law, bias) in enumerate(cells):
+
+        def advance(period: int, periods: int, done: int = done) -> None:
+            if on_progress is not None:
+                on_progress(done * periods + period, len(cells) * periods)
+
+        shares.append(_share(law, bias, starts, advance))
+    return [Share(law, *pair) for law, pair in zip(LAWS, zip(shares[::2], shares[1::2], strict=True), strict=True)]
+
+
+def _share(law: Law, bias: float, starts: int, advance: Callable[[int, int], None]) -> float:
+    changes = (
+        f"law.name={law.name}",
+        f"sensor.compass_bias_deg={bias}",
+        "plant.name=single_integrator",
+        "random_start.x_m=[-1.4, 1.4]",
+        "random_start.y_m=[-0.8, 0.8]",
+    )
+    experiment = open_experiment(SCENARIO, changes, DURATION)
+    end = simulate(experiment, range(starts), advance).points[-1]
+    error_sum = np.abs(experiment.angles.errors(end, experiment.target_angles)).sum(axis=-1)
+    return float(np.mean(error_sum < experiment.goal))
+
+
+def markdown(shares: list[Share], starts: int) -> str:
+    """The comparison as a Markdown table."""
+    lines = [
+        f"| law | measures | frame | fixes | right shape | with {COMPASS_BIAS_DEG:g} deg compass error |",
+        "|---|---|---|---|---:|---:|",
+    ]
+    for share in shares:
+        law = share.law
+        lines.append(
+            f"| {law.name} | {law.measures} | {law.frame} | {law.fixes} | {share.exact:.1%} | {share.biased:.1%} |"
+        )
+    lines.append("")
+    lines.append(f"{starts} random starts each, ideal single integrators, {DURATION:g} s.")
+    return "\n".join(lines) + "\n"
