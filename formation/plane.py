@@ -14,12 +14,12 @@ Complex = NDArray[np.complex128]
 
 def as_complex(vectors: ArrayLike) -> Complex:
     """View real vectors (..., 2) as complex numbers (...)."""
-    return np.ascontiguousarray(vectors, dtype=np.float64).view(np.complex128)[..., 0]
+    return np.asarray(vectors, dtype=np.float64, order="C").view(np.complex128)[..., 0]
 
 
 def as_vectors(numbers: ArrayLike) -> Real:
     """View complex numbers (...) as real vectors (..., 2)."""
-    return np.ascontiguousarray(numbers, dtype=np.complex128)[..., None].view(np.float64)
+    return np.asarray(numbers, dtype=np.complex128, order="C")[..., None].view(np.float64)
 
 
 def rotation(theta: float) -> Real:

@@ -1,0 +1,54 @@
+"""Sequential activation and the lemma on collision-free motion."""
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from formation import AngleLaw, SequentialActivation, collision_margins, end_configuration, random_target
+
+
+@given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 8))
+def test_followers_start_in_the_order_of_the_cascade_and_keep_the_lemmas_distance(seed: int, n: int) -> None:
+    rng = np.random.default_rng(seed)
+    target = random_target(n, rng, min_angle=np.radians(25.0))
+    p = rng.uniform(-2.0, 2.0, (n, 2))
+    end = end_configuration(target, *p[:2])
+    margins = collision_margins(target, p, end)
+    law, edges = AngleLaw(target), target.graph.edges
+    tolerance, h = 1e-4, 0.05
+    activation = SequentialActivation(target, tolerance)
+    i, j, k = target.graph.triangles.T
+    nearest = np.full(n - 2, np.inf)
+    for _ in range(20_000):
+        u = law(p[edges[:, 1]] - p[edges[:, 0]])
+        activation.update(u)
+        assert (activation.active[k] <= (activation.active[i] & activation.active[j])).all()
+        p = p + h * u * activation.active[:, None]
+        moving = activation.active[k]
+        gap = np.minimum(np.linalg.norm(p[k] - p[i], axis=1), np.linalg.norm(p[k] - p[j], axis=1))
+        nearest = np.where(moving, np.minimum(nearest, gap), nearest)
+        if activation.active.all() and np.abs(u).max() < 1e-7:
+            break
+    assert activation.active.all()
+    reach = 50.0 * tolerance * n  # a neighbour counts as settled while it is still this far from its place
+    assert (nearest >= margins - reach).all()
+
+
+def test_the_leader_and_the_first_follower_are_always_active_and_nobody_stops_again() -> None:
+    target = random_target(5, np.random.default_rng(2))
+    activation = SequentialActivation(target, 0.01, batch=(3,))
+    assert activation.active[..., :2].all()
+    activation.update(np.zeros((3, 5, 2)))
+    before = activation.active.copy()
+    activation.update(np.full((3, 5, 2), 9.0))
+    assert (activation.active >= before).all()
+
+
+def test_the_margin_is_the_condition_of_the_lemma() -> None:
+    target = random_target(3, np.random.default_rng(5))
+    end = target.positions
+    start = end.copy()
+    nearest = min(np.linalg.norm(end[2] - end[0]), np.linalg.norm(end[2] - end[1]))
+    np.testing.assert_allclose(collision_margins(target, start, end), [nearest])
+    start[2] += [3.0 * nearest, 0.0]
+    np.testing.assert_allclose(collision_margins(target, start, end), [-2.0 * nearest])

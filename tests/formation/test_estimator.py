@@ -1,0 +1,54 @@
+"""The velocity estimator: it works exactly when the leader can be heard."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from formation import VelocityEstimator
+from formation.estimator import unreachable
+
+
+@given(seed=st.integers(0, 2**32 - 1), n=st.integers(2, 12), gain=st.floats(0.1, 100.0), period=st.floats(0.001, 1.0))
+def test_all_estimates_reach_the_leaders_velocity_on_any_graph_with_a_spanning_tree(
+    seed: int, n: int, gain: float, period: float
+) -> None:
+    rng = np.random.default_rng(seed)
+    tree = np.stack([np.arange(1, n), rng.integers(0, np.arange(1, n))], axis=1)
+    extra = rng.integers(0, n, (n, 2))
+    edges = np.concatenate([tree, extra[extra[:, 0] != extra[:, 1]]])
+    estimator = VelocityEstimator(n, edges, gain)
+    v_r = rng.normal(size=2)
+    estimates = rng.normal(size=(n, 2))
+    bound = np.abs(np.concatenate([estimates, [v_r]])).max()
+    for _ in range(50):
+        estimates = estimator.step(estimates, v_r, period)
+        assert np.abs(estimates).max() <= bound + 1e-12  # convex combinations: stable for every gain and period
+    one = np.tile(v_r, (n, 1))
+    np.testing.assert_allclose(estimator.step(one, v_r, period), one, atol=1e-12)
+    matrix = np.stack([estimator.step(np.eye(n)[:, [k, k]], np.eye(n)[0, [k, k]], period)[:, 0] for k in range(n)]).T
+    assert np.abs(np.linalg.eigvals(matrix[1:, 1:])).max() < 1.0
+
+
+@given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 10))
+def test_agents_that_cannot_hear_from_the_leader_are_named(seed: int, n: int) -> None:
+    rng = np.random.default_rng(seed)
+    edges = rng.integers(0, n, (n, 2))
+    lost = unreachable(n, edges)
+    reach = np.eye(n, dtype=bool)
+    adjacency = np.zeros((n, n), dtype=bool)
+    adjacency[edges[:, 0], edges[:, 1]] = True
+    for _ in range(n):
+        reach |= adjacency @ reach
+    np.testing.assert_array_equal(lost, np.flatnonzero(~reach[:, 0]))
+    assume(lost.size)
+    names = ", ".join(str(k + 1) for k in lost)
+    with pytest.raises(ValueError, match=f"no spanning tree rooted at the leader: agents {names} cannot hear"):
+        VelocityEstimator(n, edges, 1.0)
+
+
+def test_bad_edges_and_gains_are_refused() -> None:
+    with pytest.raises(ValueError, match=r"edge \(2, 9\) names an agent outside 1\.\.3"):
+        VelocityEstimator(3, [[1, 8]], 1.0)
+    with pytest.raises(ValueError, match="gain must be a positive"):
+        VelocityEstimator(2, [[1, 0]], 0.0)

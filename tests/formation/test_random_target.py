@@ -1,0 +1,29 @@
+"""Random targets keep what they promise."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from formation import random_target
+
+
+@given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 30), degrees=st.floats(1.0, 25.0))
+def test_every_interior_angle_stays_away_from_flat(seed: int, n: int, degrees: float) -> None:
+    target = random_target(n, np.random.default_rng(seed), min_angle=np.radians(degrees))
+    assert (np.abs(np.sin(target.interior_angles)) >= np.sin(np.radians(degrees)) - 1e-12).all()
+
+
+@given(seed=st.integers(0, 2**32 - 1))
+def test_agents_stay_apart_and_inside_the_disc(seed: int) -> None:
+    p = random_target(12, np.random.default_rng(seed), min_separation=0.3, radius=2.0).positions
+    gaps = np.linalg.norm(p[:, None] - p, axis=-1)[np.triu_indices(12, 1)]
+    assert gaps.min() >= 0.3
+    assert np.linalg.norm(p, axis=1).max() <= 2.0
+
+
+def test_a_disc_that_is_too_small_is_refused_with_the_agent() -> None:
+    with pytest.raises(ValueError, match=r"no place for agent \d+ of 30: radius 1 m is too small"):
+        random_target(30, np.random.default_rng(0), min_separation=1.0)
+    with pytest.raises(ValueError, match="at least 3 agents"):
+        random_target(2, np.random.default_rng(0))
