@@ -92,6 +92,19 @@ def laws(starts: int, markdown: Path | None) -> None:
         write_text(markdown, comparison.markdown(shares, starts), "--markdown")
 
 
+@cli.command()
+@click.option("--markdown", type=click.Path(path_type=Path, dir_okay=False), help="Write a Markdown table instead.")
+def keys(markdown: Path | None) -> None:
+    """Every key of a scenario file: what it may be, its default, its meaning."""
+    from scenarios import keys as reference
+    from scenarios.report import print_keys
+
+    if markdown is None:
+        print_keys(_console())
+    else:
+        write_text(markdown, reference.markdown(), "--markdown")
+
+
 def _console() -> Console:
     from rich.console import Console
 

@@ -14,11 +14,15 @@ from rich.table import Table
 from formation import agents, collision_margins, decay_rates, end_similarity
 from scenarios.experiment import Experiment
 from scenarios.forecast import NEAR, PhaseForecast, forecast
+from scenarios.keys import keys
 from scenarios.laws import COMPASS_BIAS_DEG, Share
 from scenarios.load import library, load
 from scenarios.tracking import predicted_late_rates
 
-LEFT = ("scenario", "title", "angle", "agent", "senses", "phase", "plant", "law", "measures", "frame", "fixes")
+LEFT = frozenset(
+    ("scenario", "title", "angle", "agent", "senses", "phase", "plant", "law", "measures", "frame", "fixes")
+    + ("key", "kind", "default", "meaning")
+)
 """Columns of text; all others hold numbers and are aligned right."""
 
 PROGRESS_STEPS = 200
@@ -48,7 +52,7 @@ def _table(*columns: str, title: str | None = None) -> Table:
     table = Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for column in columns:
         left = column in LEFT
-        table.add_column(column, justify="left" if left else "right", no_wrap=column != "title")
+        table.add_column(column, justify="left" if left else "right", no_wrap=column not in ("title", "meaning"))
     return table
 
 
@@ -168,6 +172,14 @@ def _print_forecast(console: Console, experiment: Experiment, predicted: list[Ph
         )
     console.print("\n[bold]Predicted end of each phase, c R(theta) p* + xi, for ideal single integrators[/bold]")
     console.print(table)
+
+
+def print_keys(console: Console) -> None:
+    """The reference of the scenario file."""
+    table = _table("key", "kind", "default", "meaning")
+    for key in keys():
+        table.add_row(key.name, key.kind, key.default, key.meaning)
+    console.print(table, markup=False)
 
 
 def print_laws(console: Console, shares: list[Share]) -> None:

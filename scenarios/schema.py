@@ -20,7 +20,7 @@ Vector = tuple[Number, Number]
 class Table(BaseModel):
     """A table of the file: no unknown keys, no change after validation."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
 
 
 class AgentTable(Table):

@@ -1,0 +1,41 @@
+"""What the documents name exists."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def names_in(path: Path) -> set[str]:
+    return {
+        node.name
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef | ast.ClassDef)
+    }
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_every_code_reference_resolves(document: Path) -> None:
+    missing = []
+    for file, name in re.findall(r"`([\w/-]+\.py)::(\w+)`", document.read_text(encoding="utf-8")):
+        path = next((p for p in (ROOT / file, ROOT / "tests" / file) if p.is_file()), None)
+        if path is None or name not in names_in(path):
+            missing.append(f"{file}::{name}")
+    assert missing == []
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_every_relative_link_and_picture_exists(document: Path) -> None:
+    targets = re.findall(r"\]\(([^)#\s]+)", document.read_text(encoding="utf-8"))
+    local = [target for target in targets if "://" not in target]
+    assert [target for target in local if not (document.parent / target).exists()] == []
+
+
+def test_every_library_scenario_named_in_the_readme_exists_and_the_other_way_round() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    named = set(re.findall(r"^\| `([\w-]+)` \|", readme, flags=re.MULTILINE))
+    assert {path.stem for path in (ROOT / "scenarios" / "library").glob("*.toml")} <= named
