@@ -17,6 +17,9 @@ from scenarios.schema import Scenario
 
 LIBRARY = Path(__file__).parent / "library"
 
+LONGEST_VALUE = 80
+"""Characters of a refused value that a message repeats."""
+
 
 @dataclass(frozen=True)
 class ScenarioFile:
@@ -47,20 +50,16 @@ def library() -> list[str]:
 
 
 def find(scenario: str) -> Path:
-    """The file of a library name or of a path.
+    """The file of a library name, or the path itself where it is one.
 
     Raises:
-        InputError: there is none.
+        InputError: the library has no such name.
     """
     if scenario.endswith(".toml") or "/" in scenario:
-        path = Path(scenario)
-        if not path.is_file():
-            raise InputError(f"{scenario}: no such scenario file")
-        return path
-    path = LIBRARY / f"{scenario}.toml"
-    if not path.is_file():
+        return Path(scenario)
+    if scenario not in library():
         raise InputError(f"scenario: no scenario named {scenario!r}, {did_you_mean(scenario, library())}")
-    return path
+    return LIBRARY / f"{scenario}.toml"
 
 
 def load(scenario: str, changes: Sequence[str] = ()) -> ScenarioFile:
@@ -76,11 +75,16 @@ def load(scenario: str, changes: Sequence[str] = ()) -> ScenarioFile:
     path = find(scenario)
     try:
         text = path.read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        raise InputError(f"{scenario}: no such scenario file") from error
+    except OSError as error:
+        raise InputError(f"{scenario}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{scenario}: not a text file in UTF-8: {error.reason} at byte {error.start}") from error
+    try:
         data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:  # besides TOMLDecodeError: numbers too long, nesting too deep
         raise InputError(f"{scenario}: not valid TOML: {error}") from error
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{scenario}: cannot be read: {error}") from error
     for change in changes:
         _apply(data, change)
     return ScenarioFile(path.stem, scenario, head_comment(text), validate(data, scenario))
@@ -123,7 +127,8 @@ def validate(data: Mapping[str, Any], file: str) -> Scenario:
     if scenario.agents and len(scenario.agents) < 3:
         raise InputError(f"{file}: agents: expected at least 3, got {len(scenario.agents)}")
     if bool(scenario.phases) == (scenario.duration_s is not None):
-        raise InputError(f"{file}: duration_s: expected either duration_s or phases")
+        both = "both" if scenario.phases else "neither"
+        raise InputError(f"{file}: duration_s: expected either duration_s or phases, got {both}")
     return scenario
 
 
@@ -131,16 +136,18 @@ def _apply(data: dict[str, Any], change: str) -> None:
     key, equals, text = change.partition("=")
     parts = key.strip().split(".")
     if not equals or not all(parts):
-        raise InputError(f"--set {change}: expected key=value with a dotted key")
+        raise InputError(f"--set {_shortened(change)}: expected key=value with a dotted key")
     try:
         value = tomllib.loads(f"value = {text}")["value"]
     except tomllib.TOMLDecodeError:
         value = text.strip()  # a bare word, as in plant.name=saturated
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"--set {_shortened(change)}: not a TOML value: {error}") from error
     place: Any = data
     for part in parts[:-1]:
         place = _descend(place, part, change)
     if not isinstance(place, dict):
-        raise InputError(f"--set {change}: {'.'.join(parts[:-1])} is not a table")
+        raise InputError(f"--set {_shortened(change)}: {'.'.join(parts[:-1])} is not a table")
     place[parts[-1]] = value
 
 
@@ -149,9 +156,9 @@ def _descend(place: Any, part: str, change: str) -> Any:
         for position, entry in enumerate(place, start=1):
             if isinstance(entry, dict) and str(entry.get("id", position)) == part:
                 return entry
-        raise InputError(f"--set {change}: no entry {part}")
+        raise InputError(f"--set {_shortened(change)}: no entry {part}")
     if not isinstance(place, dict):
-        raise InputError(f"--set {change}: {part} is not in a table")
+        raise InputError(f"--set {_shortened(change)}: {part} is not in a table")
     return place.setdefault(part, {})
 
 
@@ -165,8 +172,21 @@ def _explain(error: ValidationError, data: Mapping[str, Any]) -> str:
         return f"{field}: unknown key, {did_you_mean(str(location[-1]), parent.model_fields)}"
     if first["type"] == "missing":
         return f"{field}: missing"
-    message = first["msg"].removeprefix("Input should be ")
-    return f"{field}: expected {message}, got {first['input']!r}"
+    expected = first["msg"].removeprefix("Input should be ")
+    match first["type"]:
+        case "model_type" | "dict_type":
+            expected = "a table"
+        case "tuple_type":
+            expected = "an array"
+        case "too_short":
+            expected = f"at least {first['ctx']['min_length']} entries"
+        case "too_long":
+            expected = f"{first['ctx']['max_length']} entries"
+    return f"{field}: expected {expected}, got {_shortened(repr(first['input']))}"
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= LONGEST_VALUE else f"{text[:LONGEST_VALUE]}..."
 
 
 def _field_name(location: Iterable[int | str], data: Any) -> str:
