@@ -28,6 +28,9 @@ from scenarios.targets import build_target
 
 Real = NDArray[np.float64]
 
+LONGEST_RUN = 1_000_000
+"""Control periods whose states are kept in memory; nine hours of the Robotarium's."""
+
 
 @dataclass(frozen=True, eq=False)
 class Experiment:
@@ -112,13 +115,15 @@ def build(file: ScenarioFile, duration: float | None = None) -> Experiment:
         nid = NearIdentityDiffeomorphism(scenario.robot.projection_distance_m)
     with located(path, "arena"):
         arena = Arena(scenario.arena.x_m, scenario.arena.y_m, scenario.arena.walls)
+    phases = _phases(path, scenario, target, duration)
+    _check_length(path, phases, scenario.plant.control_period_s, "duration_s" if duration is None else "--duration")
     return Experiment(
         file=file,
         target=target,
         angles=angles,
         target_angles=target_angles,
         starts=build_starts(path, scenario, target),
-        phases=_phases(path, scenario, target, duration),
+        phases=phases,
         law=_law(scenario, target),
         estimator=_estimator(path, scenario, target.graph),
         sensor=_sensor(scenario, target.graph),
@@ -160,6 +165,15 @@ def _robot(scenario: Scenario) -> RobotModel:
             body_friction=table.body_friction,
         ),
     )
+
+
+def _check_length(path: str, phases: tuple[Phase, ...], control_period: float, field: str) -> None:
+    seconds = sum(phase.duration for phase in phases)
+    if not seconds / control_period <= LONGEST_RUN:
+        raise InputError(
+            f"{path}: {field}: expected at most {LONGEST_RUN} control periods of {control_period:g} s, "
+            f"got {seconds:g} s"
+        )
 
 
 def _phases(path: str, scenario: Scenario, target: TargetFormation, duration: float | None) -> tuple[Phase, ...]:

@@ -9,10 +9,13 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
-NotNegative = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
-AgentNumber = Annotated[int, Field(strict=True, ge=1)]
+LARGEST = 1e6
+"""Largest magnitude of any number in a file, in its own unit: squares and products of such numbers stay finite."""
+
+Number = Annotated[float, Field(strict=True, ge=-LARGEST, le=LARGEST, allow_inf_nan=False)]
+Positive = Annotated[float, Field(strict=True, gt=0.0, le=LARGEST, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(strict=True, ge=0.0, le=LARGEST, allow_inf_nan=False)]
+AgentNumber = Annotated[int, Field(strict=True, ge=1, le=int(LARGEST))]
 Flag = Annotated[bool, Field(strict=True)]
 Vector = tuple[Number, Number]
 
