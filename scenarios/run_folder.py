@@ -35,21 +35,27 @@ def writing(folder: Path) -> Iterator[Path]:
     Raises:
         InputError: the place cannot be written, or holds something that is not a run.
     """
-    if folder.exists() and not is_run(folder) and (not folder.is_dir() or any(folder.iterdir())):
-        raise InputError(f"--out {folder}: exists and is not a run folder")
     try:
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        scratch = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+        place = Path(os.path.realpath(folder))  # what a link points to is replaced, not the link
+        if place.exists() and not is_run(place) and (not place.is_dir() or any(place.iterdir())):
+            raise InputError(f"--out {folder}: exists and is not a run folder")
+        place.parent.mkdir(parents=True, exist_ok=True)
+        parent = Path(tempfile.mkdtemp(prefix=f".{place.name[:100]}.", dir=place.parent))
     except OSError as error:
         raise InputError(f"--out {folder}: cannot be written: {error.strerror}") from error
+    scratch, older = parent / "new", parent / "old"
     try:
+        scratch.mkdir()
         yield scratch
-        scratch.chmod(0o755)
-        if folder.exists():
-            shutil.rmtree(folder)
-        os.replace(scratch, folder)
+        if place.exists():
+            os.replace(place, older)  # whole, so that no half-deleted folder ever stands in its place
+        os.replace(scratch, place)
+    except OSError as error:
+        raise InputError(f"--out {folder}: cannot be written: {error.strerror}") from error
     finally:
-        shutil.rmtree(scratch, ignore_errors=True)
+        if older.exists() and not place.exists():
+            os.replace(older, place)
+        shutil.rmtree(parent, ignore_errors=True)
 
 
 def is_run(folder: Path) -> bool:
