@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -29,10 +30,13 @@ class Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=Commands, invoke_without_command=True, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="angle-formation")
-def cli() -> None:
+@click.pass_context
+def cli(ctx: click.Context) -> None:
     """Angle-constrained formation control of differential-drive robots."""
+    if ctx.invoked_subcommand is None:
+        click.echo(ctx.get_help())
 
 
 @cli.command("list")
@@ -108,8 +112,8 @@ def keys(markdown: Path | None) -> None:
 def _console() -> Console:
     from rich.console import Console
 
-    # A pipe or a file has no width: tables keep all their columns there.
-    return Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 160)
+    # Where there is no terminal, wide enough for every table.
+    return Console(highlight=False, soft_wrap=True, width=shutil.get_terminal_size((160, 25)).columns)
 
 
 def main() -> None:

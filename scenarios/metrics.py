@@ -64,6 +64,7 @@ class Metrics:
     outcome: Outcome
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a diverged run is an outcome, not a warning
 def measure(experiment: Experiment, trajectory: Trajectory) -> Metrics:
     """The measures of a single run."""
     angles, targets = experiment.angles, experiment.target_angles

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
@@ -39,7 +40,7 @@ def progress_bar(console: Console, name: str) -> Iterator[Callable[[int, int], N
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=console, transient=True) as progress:
-        task = progress.add_task(name)
+        task = progress.add_task(escape(name))
 
         def advance(done: int, total: int) -> None:
             if done % PROGRESS_STEPS == 0 or done == total:
@@ -62,15 +63,15 @@ def print_library(console: Console) -> None:
     for name in library():
         s = load(name).scenario
         seconds = s.duration_s or sum(phase.duration_s for phase in s.phases)
-        table.add_row(name, str(len(s.agents)), f"{seconds:g}", s.plant.name, s.title)
+        table.add_row(name, str(len(s.agents)), f"{seconds:g}", s.plant.name, escape(s.title))
     console.print(table)
 
 
 def print_experiment(console: Console, experiment: Experiment, seed: int) -> None:
     """Graph, angles, assumptions, predicted rates and end configurations."""
-    console.print(f"[bold]{experiment.file.name}[/bold]: {experiment.scenario.title}")
+    console.print(f"[bold]{escape(experiment.file.name)}[/bold]: {escape(experiment.scenario.title)}")
     if experiment.file.description:
-        console.print(experiment.file.description, style="dim", highlight=False, markup=False)
+        console.print(escape(experiment.file.description), style="dim")
     start = experiment.initial_points(seed)
     predicted = forecast(experiment, start)
     _print_assumptions(console, experiment, start)
@@ -106,6 +107,7 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
     rates, late = decay_rates(target), predicted_late_rates(experiment)
     margins = collision_margins(target, start, end)
     still = len(experiment.phases) == 1 and not any(experiment.phases[0].velocity)  # the premise of Lemma 3
+    still = len(experiment.phases) == 1 and not any(experiment.phases[0].velocity)  # the premise of Lemma 3
     table = _table(
         "agent",
         "senses",
@@ -138,9 +140,8 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
             cells[3],
         )
     console.print(table)
-    console.print(
-        "(c3): where the margin is positive, a follower that starts when its neighbours have settled avoids both"
-    )
+    if still:
+        console.print("(c3): a follower with a positive margin that starts after its neighbours have settled avoids both")
 
 
 def _print_forecast(console: Console, experiment: Experiment, predicted: list[PhaseForecast]) -> None:
@@ -160,7 +161,7 @@ def _print_forecast(console: Console, experiment: Experiment, predicted: list[Ph
         until += phase.duration
         similarity = end_similarity(experiment.target, *ahead.end[: agents.FIRST_ORDINARY])
         table.add_row(
-            phase.name,
+            escape(phase.name),
             f"{until:g}",
             _point(phase.velocity),
             "-" if phase.delta is None else _point(phase.delta),
@@ -239,7 +240,7 @@ def _print_phases(console: Console, result: dict[str, Any]) -> None:
     )
     for phase in result["phases"]:
         table.add_row(
-            phase["name"],
+            escape(phase["name"]),
             f"{phase['end_s']:.1f}",
             _value(phase["angle_error_sum_rad"], ".2e"),
             _value(phase["axle_angle_error_sum_rad"], ".2e"),
@@ -283,10 +284,12 @@ def _describe(violation: dict[str, Any]) -> str:
         case "collision":
             return f"agents {who} come within {first['value']:.3f} m; {where}"
         case _:
-            return f"agent {who} commands a wheel to {first['value']:.1f} rad/s (warning); {where}"
+            return f"agent {who} commands a wheel to {_value(first['value'], '.4g')} rad/s (warning); {where}"
 
 
 def _point(point: Any) -> str:
+    if None in point:
+        return "nowhere"
     x, y = (float(c) + 0.0 if abs(c) > 5e-5 else 0.0 for c in point)
     return f"({x:.4g}, {y:.4g})"
 

@@ -20,6 +20,7 @@ RECORDED_PACKAGES = ("angle-formation", "numpy", "pymunk")
 """Versions that a result depends on."""
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a diverged run is an outcome, not a warning
 def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: Metrics) -> dict[str, Any]:
     """The content of ``result.json``."""
     final, axle_final = metrics.angle_errors[-1], _axle_errors(experiment, trajectory)
@@ -105,7 +106,7 @@ def _violation(violation: Violation) -> dict[str, Any]:
         "first": {
             "time_s": violation.time,
             "agents": agents.numbers(violation.robots).tolist(),
-            "place_m": list(violation.place),
-            "value": violation.value,
+            "place_m": [_number(coordinate) for coordinate in violation.place],
+            "value": _number(violation.value),
         },
     }

@@ -33,5 +33,5 @@ def run_to_folder(experiment: Experiment, seed: int, out: Path | None, console: 
         run_folder.write_json(scratch / run_folder.SCENARIO, experiment.scenario.model_dump(mode="json"))
         run_folder.write_json(scratch / run_folder.RESULT, summary)
     print_result(console, summary)
-    console.print(f"run folder: {folder}")
+    console.print(f"run folder: {escape(str(folder))}")
     return metrics.outcome == "converged"

@@ -92,6 +92,7 @@ class Controller:
         return np.exp(1j * errors).reshape(*self._batch, n, 1)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a diverged run is an outcome, not a warning
 def simulate(
     experiment: Experiment,
     seed: int | Sequence[int] = 0,
