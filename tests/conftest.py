@@ -1,0 +1,87 @@
+"""What all tests share: hypothesis settings, scenarios made from the library's, and targets for benchmarks."""
+
+import tomllib
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import hypothesis
+import numpy as np
+import pytest
+
+from scenarios.experiment import Experiment, build, open_experiment
+from scenarios.load import LIBRARY, ScenarioFile, validate
+
+hypothesis.settings.register_profile("project", deadline=None, derandomize=True, max_examples=60)
+hypothesis.settings.load_profile("project")
+
+MEASURED = pytest.StashKey[list[tuple[str, str, str, bool]]]()
+
+
+@pytest.fixture(scope="session")
+def shape() -> Experiment:
+    """The paper's shape experiment, as the library has it."""
+    return open_experiment("shape")
+
+
+@pytest.fixture(scope="session")
+def varied() -> Callable[..., Experiment]:
+    """Makes the shape experiment with ``--set`` changes, and keys taken away first."""
+
+    def make(*changes: str, duration: float | None = None, without: str | None = None, **tables: Any) -> Experiment:
+        if without is None and not tables:
+            return open_experiment("shape", changes, duration)
+        data = tomllib.loads((LIBRARY / "shape.toml").read_text(encoding="utf-8"))
+        if without is not None:
+            del data[without]
+        return build(ScenarioFile("varied", "varied", "", validate(data | tables, "varied")), duration)
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def moving(varied: Callable[..., Experiment]) -> Callable[[str], Experiment]:
+    """Makes a short two-phase maneuver of the six robots with the named first-follower law."""
+
+    def make(first_follower: str, plant: str = "single_integrator") -> Experiment:
+        phases = [
+            {"name": "up", "duration_s": 2.0, "velocity_m_s": [0.0, 0.02], "displacement_m": [0.4, 0.4]},
+            {"name": "right", "duration_s": 2.0, "velocity_m_s": [0.05, 0.01], "displacement_m": [0.4, -0.4]},
+        ]
+        return varied(
+            without="duration_s", phases=phases, law={"first_follower": first_follower}, plant={"name": plant}
+        )
+
+    return make
+
+
+@pytest.fixture
+def target(request: pytest.FixtureRequest) -> Callable[[str, float, float, str], None]:
+    """Prints a measured figure beside its target when the session ends, and fails where it is missed."""
+    rows = request.config.stash.setdefault(MEASURED, [])
+
+    def against(name: str, measured: float, at_most: float, unit: str) -> None:
+        met = measured <= at_most
+        rows.append((name, f"{measured:.4g} {unit}", f"{at_most:g} {unit}", met))
+        assert met, f"{name}: {measured:.4g} {unit}, target {at_most:g} {unit}"
+
+    return against
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
+    """Measured figures beside their targets."""
+    rows = config.stash.get(MEASURED, [])
+    if rows:
+        terminalreporter.section("measured against target")
+        width = max(len(name) for name, *_ in rows)
+        for name, measured, at_most, met in rows:
+            terminalreporter.line(
+                f"{name:{width}}  {measured:>12}  at most {at_most:<10}  {'met' if met else 'MISSED'}"
+            )
+
+
+@pytest.fixture(autouse=True)
+def _no_global_randomness() -> Iterator[None]:
+    """A test that draws from numpy's global state would depend on the order of the tests."""
+    before = np.random.get_state()[1].tolist()  # noqa: NPY002 (looks at the global state, draws nothing)
+    yield
+    assert np.random.get_state()[1].tolist() == before, "numpy's global random state was used"  # noqa: NPY002

@@ -1,0 +1,63 @@
+"""Laws of the first follower: what each steers and what each leaves alone."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from formation.first_follower import COMPASS_FREE, FIRST_FOLLOWER_LAWS, bearing, displacement, distance, stationary
+
+vectors = st.builds(lambda r, angle: np.asarray(r * np.exp(1j * angle)), st.floats(0.05, 3.0), st.floats(-np.pi, np.pi))
+turns = st.floats(-np.pi, np.pi).map(lambda angle: np.exp(1j * angle))
+
+
+@given(vectors, vectors)
+def test_the_stationary_law_stands_still(e: np.ndarray, delta: np.ndarray) -> None:
+    assert stationary(e, delta) == 0.0
+
+
+@given(vectors, vectors)
+def test_the_displacement_law_heads_straight_for_the_commanded_place(e: np.ndarray, delta: np.ndarray) -> None:
+    assert e + displacement(e, delta) == pytest.approx(delta)
+
+
+@given(vectors, vectors)
+def test_the_distance_law_moves_along_the_ray_and_shrinks_the_length_error(e: np.ndarray, delta: np.ndarray) -> None:
+    u = distance(e, delta)
+    assert (u * np.conj(e)).imag == pytest.approx(0.0, abs=1e-10)
+    assert (u * np.conj(e)).real * (abs(e) - abs(delta)) <= 0.0
+
+
+@given(vectors, vectors)
+def test_the_bearing_law_moves_across_the_ray_and_towards_the_commanded_bearing(
+    e: np.ndarray, delta: np.ndarray
+) -> None:
+    u = bearing(e, delta)
+    assert (u * np.conj(e)).real == pytest.approx(0.0, abs=1e-12)
+    assert (u * np.conj(delta)).real >= -1e-12
+    assert abs(u) == pytest.approx(abs(np.sin(np.angle(e * np.conj(delta)))), abs=1e-12)
+
+
+@given(vectors, vectors)
+def test_every_law_rests_where_its_command_is_met(e: np.ndarray, delta: np.ndarray) -> None:
+    assert displacement(delta, delta) == 0.0
+    assert distance(e / abs(e) * abs(delta), delta) == pytest.approx(0.0, abs=1e-12)
+    assert bearing(delta * abs(e) / abs(delta), delta) == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", FIRST_FOLLOWER_LAWS)
+@given(vectors, vectors, turns)
+def test_every_law_turns_with_a_frame_in_which_both_arguments_turn(
+    name: str, e: np.ndarray, delta: np.ndarray, turn: complex
+) -> None:
+    law = FIRST_FOLLOWER_LAWS[name]
+    assert law(e * turn, delta * turn) == pytest.approx(law(e, delta) * turn, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", COMPASS_FREE)
+@given(vectors, vectors, turns)
+def test_laws_without_compass_do_not_care_how_the_command_is_turned(
+    name: str, e: np.ndarray, delta: np.ndarray, turn: complex
+) -> None:
+    law = FIRST_FOLLOWER_LAWS[name]
+    assert law(e, delta * turn) == pytest.approx(law(e, delta), abs=1e-12)
