@@ -1,4 +1,4 @@
-"""What the paper states inconsistently, and that the resolutions hold. Numbers in the comments: table in docs/paper.md."""
+"""What the paper states inconsistently, and that the resolutions hold, by their number in docs/paper.md."""
 
 import numpy as np
 import pytest
