@@ -107,7 +107,6 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
     rates, late = decay_rates(target), predicted_late_rates(experiment)
     margins = collision_margins(target, start, end)
     still = len(experiment.phases) == 1 and not any(experiment.phases[0].velocity)  # the premise of Lemma 3
-    still = len(experiment.phases) == 1 and not any(experiment.phases[0].velocity)  # the premise of Lemma 3
     table = _table(
         "agent",
         "senses",
@@ -141,7 +140,7 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
         )
     console.print(table)
     if still:
-        console.print("(c3): a follower with a positive margin that starts after its neighbours have settled avoids both")
+        console.print("(c3): a follower with a positive margin that starts after its neighbours settled avoids both")
 
 
 def _print_forecast(console: Console, experiment: Experiment, predicted: list[PhaseForecast]) -> None:

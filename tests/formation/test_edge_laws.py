@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formation.first_follower import COMPASS_FREE, FIRST_FOLLOWER_LAWS, bearing, displacement, distance, stationary
+from formation.edge_laws import COMPASS_FREE, EDGE_LAWS, bearing, displacement, distance, stationary
 
 vectors = st.builds(lambda r, angle: np.asarray(r * np.exp(1j * angle)), st.floats(0.05, 3.0), st.floats(-np.pi, np.pi))
 turns = st.floats(-np.pi, np.pi).map(lambda angle: np.exp(1j * angle))
@@ -45,12 +45,12 @@ def test_every_law_rests_where_its_command_is_met(e: np.ndarray, delta: np.ndarr
     assert bearing(delta * abs(e) / abs(delta), delta) == pytest.approx(0.0, abs=1e-12)
 
 
-@pytest.mark.parametrize("name", FIRST_FOLLOWER_LAWS)
+@pytest.mark.parametrize("name", EDGE_LAWS)
 @given(vectors, vectors, turns)
 def test_every_law_turns_with_a_frame_in_which_both_arguments_turn(
     name: str, e: np.ndarray, delta: np.ndarray, turn: complex
 ) -> None:
-    law = FIRST_FOLLOWER_LAWS[name]
+    law = EDGE_LAWS[name]
     assert law(e * turn, delta * turn) == pytest.approx(law(e, delta) * turn, abs=1e-12)
 
 
@@ -59,5 +59,5 @@ def test_every_law_turns_with_a_frame_in_which_both_arguments_turn(
 def test_laws_without_compass_do_not_care_how_the_command_is_turned(
     name: str, e: np.ndarray, delta: np.ndarray, turn: complex
 ) -> None:
-    law = FIRST_FOLLOWER_LAWS[name]
+    law = EDGE_LAWS[name]
     assert law(e, delta * turn) == pytest.approx(law(e, delta), abs=1e-12)
