@@ -37,8 +37,9 @@ def keys(table: type[BaseModel] = Scenario, prefix: str = "") -> Iterator[Key]:
 
 
 def markdown() -> str:
-    """The reference as a Markdown table."""
-    lines = ["| key | kind | default | meaning |", "|---|---|---|---|"]
+    """The reference as a Markdown page."""
+    lines = ["# The scenario file", "", "Written by `formation keys --markdown docs/scenario-file.md`.", ""]
+    lines += ["| key | kind | default | meaning |", "|---|---|---|---|"]
     lines += [f"| `{key.name}` | {key.kind} | {_code(key.default)} | {key.meaning} |" for key in keys()]
     return "\n".join(lines) + "\n"
 

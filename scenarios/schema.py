@@ -30,6 +30,7 @@ class AgentTable(Table):
     """One agent."""
 
     id: AgentNumber
+    """Its number: 1 is the leader, 2 the first follower."""
     neighbours: tuple[AgentNumber, ...] = ()
     """Numbers of the agents that it senses: none for 1, [1] for 2, two smaller numbers for all others."""
     start: Vector | None = None
@@ -38,7 +39,7 @@ class AgentTable(Table):
     """Initial heading; drawn from the run's seed where absent."""
     target: Vector | None = None
     """Its place in one configuration that has the desired shape, m; given for all agents, or for none and then the
-    shape is defined by ``target.angles_deg``."""
+    shape is defined by `target.angles_deg`."""
 
 
 class TargetTable(Table):
@@ -54,7 +55,9 @@ class PhaseTable(Table):
     """One phase of a maneuver."""
 
     name: str
+    """What a person calls it."""
     duration_s: Positive
+    """Its length."""
     velocity_m_s: Vector = (0.0, 0.0)
     """v_r, in the common frame."""
     displacement_m: Vector | None = None
@@ -91,15 +94,20 @@ class RobotTable(Table):
     saturation: Literal["scale", "clip"] = "scale"
     """At the wheels' limit: slow both wheels by one factor, or cut each by itself."""
     wheel_speed_limit_rad_s: Positive = 12.5
+    """Of either wheel, in both directions."""
     tyre_friction: NotNegative = 0.8
+    """Coefficient between tyres and floor: the force of all tyres is at most this times the weight."""
     body_friction: NotNegative = 0.0
+    """Coefficient between two chassis, and a chassis and a wall."""
 
 
 class ArenaTable(Table):
     """The floor that the testbed grants."""
 
     x_m: Vector = (-1.6, 1.6)
+    """[low, high] of the floor."""
     y_m: Vector = (-1.0, 1.0)
+    """[low, high] of the floor."""
     walls: Flag = False
     """Whether the floor's sides stop a chassis."""
 
@@ -108,6 +116,7 @@ class PlantTable(Table):
     """The world of the run."""
 
     name: Literal["single_integrator", "unicycle", "saturated", "pymunk"] = "pymunk"
+    """From the theorem's points to bodies with mass; `--plant` replaces it."""
     control_period_s: Positive = 0.033
     """Stretched by less than half a period per phase, so that a whole number of periods fits each phase."""
 
@@ -116,7 +125,9 @@ class SensorTable(Table):
     """Errors of what the robots measure."""
 
     position_noise_m: NotNegative = 0.0
+    """Standard deviation of each coordinate of a measured relative position, drawn each control period."""
     bearing_noise_deg: NotNegative = 0.0
+    """Standard deviation of a rotation of a measurement about its observer, drawn each control period."""
     compass_bias_deg: NotNegative = 0.0
     """Standard deviation of each robot's constant compass error."""
 
@@ -125,18 +136,24 @@ class RandomStartTable(Table):
     """Initial projected points drawn uniformly from a rectangle, by the run's seed."""
 
     x_m: Vector = (-1.4, 1.4)
+    """[low, high] of the rectangle."""
     y_m: Vector = (-0.8, 0.8)
+    """[low, high] of the rectangle."""
     min_separation_m: NotNegative = 0.2
+    """Smallest distance between two starts."""
 
 
 class RandomFormationTable(Table):
-    """A random leader-first-follower graph and target, in place of ``agents``. Starts need ``random_start``."""
+    """A random leader-first-follower graph and target, in place of `agents`. Starts need `random_start`."""
 
     agents: Annotated[int, Field(strict=True, ge=3)]
+    """How many."""
     seed: Annotated[int, Field(strict=True, ge=0)]
+    """Of graph and target; not the run's seed."""
     radius_m: Positive = 1.0
     """Of the disc that holds the target."""
     min_separation_m: NotNegative = 0.0
+    """Smallest distance between two agents of the target."""
     min_angle_deg: Annotated[float, Field(strict=True, gt=0.0, lt=60.0)] = 15.0
     """Every interior angle stays this far from a degenerate triangle."""
 
@@ -152,15 +169,16 @@ class Scenario(Table):
     """A whole scenario file."""
 
     title: str
+    """One line that `formation list` shows."""
     source: str = ""
     """Where the experiment comes from."""
     duration_s: Positive | None = None
     """Length of the run; absent where phases are given."""
     agents: tuple[AgentTable, ...] = ()
-    """At least three, with the numbers 1..n, unless ``random_formation`` is given."""
+    """At least three, with the numbers 1..n, unless `random_formation` is given."""
     random_formation: RandomFormationTable | None = None
     random_start: RandomStartTable | None = None
-    """In place of the agents' own ``start``."""
+    """In place of the agents' own `start`."""
     target: TargetTable = TargetTable()
     law: LawTable = LawTable()
     phases: tuple[PhaseTable, ...] = ()
