@@ -61,3 +61,17 @@ def test_laws_without_compass_do_not_care_how_the_command_is_turned(
 ) -> None:
     law = EDGE_LAWS[name]
     assert law(e, delta * turn) == pytest.approx(law(e, delta), abs=1e-12)
+
+
+@given(vectors, vectors)
+def test_each_law_is_its_equation_in_real_vectors(e: np.ndarray, delta: np.ndarray) -> None:
+    x, d = np.array([e.real, e.imag]), np.array([delta.real, delta.imag])
+    b, b_star = x / np.linalg.norm(x), d / np.linalg.norm(d)
+    equations = {
+        "displacement": -(x - d),
+        "distance": -(x @ x - d @ d) * x,
+        "bearing": (np.eye(2) - np.outer(b, b)) @ b_star,
+    }
+    for name, expected in equations.items():
+        velocity = EDGE_LAWS[name](e, delta)
+        np.testing.assert_allclose([velocity.real, velocity.imag], expected, atol=1e-11)
