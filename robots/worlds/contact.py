@@ -77,14 +77,15 @@ class Contact:
         self.wheel_speeds = self._drive.saturate(wheels, self._saturation)
         twist = self.wheel_speeds @ self._to_twist
         drive = self._command[self._n :]
-        # The partner moves along the chord of the arc that the wheels command over the whole period.
+        dt = period / self._substeps
+        # The partner moves along the chord of the arc that the wheels command over a whole period. The solver moves
+        # bodies before it gives them new velocities, so that arc begins one substep from now.
         chord = chord_factor(twist[:, 1] * period)
         chord *= twist[:, 0]
-        chord *= self.headings.view(np.complex128)[:, 0]
+        chord *= np.exp(1j * (self.poses[:, 2] + dt * self._command[: self._n, 2]))
         drive[:, :2] = chord[:, None].view(np.float64)
         drive[:, 2] = twist[:, 1]
         batch.set_space_bodies(self.space, _COMMAND, self._command_buffer)
-        dt = period / self._substeps
         for _ in range(self._substeps):
             self.space.step(dt)
         self._observe()
