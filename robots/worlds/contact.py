@@ -23,7 +23,7 @@ from robots.arena import Arena
 from robots.drive import Saturation
 from robots.model import RobotModel
 from robots.nid import NearIdentityDiffeomorphism
-from robots.worlds.kinematic import chord_factor
+from robots.worlds.kinematic import arc_chord
 from robots.worlds.protocol import Controller, Real
 
 SUBSTEPS = 4
@@ -80,9 +80,8 @@ class Contact:
         dt = period / self._substeps
         # The partner moves along the chord of the arc that the wheels command over a whole period. The solver moves
         # bodies before it gives them new velocities, so that arc begins one substep from now.
-        chord = chord_factor(twist[:, 1] * period)
-        chord *= twist[:, 0]
-        chord *= np.exp(1j * (self.poses[:, 2] + dt * self._command[: self._n, 2]))
+        theta = self.poses[:, 2] + dt * self._command[: self._n, 2]
+        chord = arc_chord(twist[:, 0], theta, period * twist[:, 1])
         drive[:, :2] = chord[:, None].view(np.float64)
         drive[:, 2] = twist[:, 1]
         batch.set_space_bodies(self.space, _COMMAND, self._command_buffer)

@@ -6,10 +6,13 @@ All three accept any leading batch dimensions, so that many runs advance as one 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robots.drive import DifferentialDrive, Saturation
 from robots.nid import NearIdentityDiffeomorphism
 from robots.worlds.protocol import Controller, Real
+
+Complex = NDArray[np.complex128]
 
 
 class SingleIntegrator:
@@ -57,9 +60,7 @@ class Unicycle:
         self.wheel_speeds = self._limited(controller(self.points, self.headings) @ self._to_wheels)
         twist = self.wheel_speeds @ self._to_twist
         turn = twist[..., 1] * period
-        chord = chord_factor(turn)
-        chord *= twist[..., 0] * period
-        chord *= self.headings.view(np.complex128)[..., 0]
+        chord = arc_chord(twist[..., 0] * period, self.poses[..., 2], turn)
         self.poses[..., :2] += chord[..., None].view(np.float64)
         self.poses[..., 2] += turn
         self._observe()
@@ -89,16 +90,19 @@ class Saturated(Unicycle):
         return self._drive.saturate(wheel_speeds, self._saturation)
 
 
-def chord_factor(turn: Real) -> np.ndarray:
-    """The chord of a unit arc that turns by ``turn`` (...), radians, relative to its initial heading, complex (...).
+def arc_chord(length: Real, theta: Real, turn: Real) -> Complex:
+    """The chord of an arc of ``length`` (...), metres, that begins at heading ``theta`` and turns by ``turn``, radians.
 
-    A body that moves at constant twist covers the chord (e^{i turn} - 1) / (i turn) of its path, written here as
-    e^{i turn / 2} sin(turn / 2) / (turn / 2), which keeps full accuracy for small turns.
+    A body that moves at constant twist covers (e^{i turn} - 1) / (i turn) of its path, relative to its first heading.
+    Written as e^{i turn / 2} sin(turn / 2) / (turn / 2) it keeps full accuracy for small turns. Complex (...).
     """
     half = 0.5 * turn
-    direction = np.exp(1j * half)
-    direction *= np.divide(direction.imag, half, out=np.ones_like(half), where=half != 0.0)
-    return direction
+    half[half == 0.0] = 1e-300  # sin(x) / x is 1 there, without a division by 0
+    share = np.sin(half)
+    share /= half
+    share *= length
+    half += theta
+    return np.exp(1j * half) * share
 
 
 def _unit(theta: Real) -> Real:

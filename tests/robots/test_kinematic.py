@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robots import GTERNAL, NearIdentityDiffeomorphism, make_world
-from robots.worlds.kinematic import SingleIntegrator, Unicycle, chord_factor
+from robots.worlds.kinematic import SingleIntegrator, Unicycle, arc_chord
 
 NID = NearIdentityDiffeomorphism(0.025)
 KINEMATIC = ["single_integrator", "unicycle", "saturated"]
@@ -32,11 +32,11 @@ def test_the_chord_of_a_small_turn_keeps_full_accuracy(turn: float) -> None:
     """Against the series of (e^{ix} - 1) / (ix), whose next term is below 1e-16."""
     x = 1j * turn
     series = 1 + x / 2 * (1 + x / 3 * (1 + x / 4 * (1 + x / 5 * (1 + x / 6 * (1 + x / 7 * (1 + x / 8 * (1 + x / 9)))))))
-    assert chord_factor(np.array([turn]))[0] == pytest.approx(series, abs=1e-15)
+    assert arc_chord(np.ones(1), np.zeros(1), np.array([turn]))[0] == pytest.approx(series, abs=1e-15)
 
 
 def test_the_chord_of_no_turn_is_the_path() -> None:
-    assert chord_factor(np.array([0.0, 5e-324])).tolist() == [1.0, 1.0]
+    assert arc_chord(np.ones(2), np.zeros(2), np.array([0.0, 5e-324])) == pytest.approx([1.0, 1.0], abs=1e-15)
 
 
 def end_of_linear_flow(period: float) -> complex:
