@@ -26,6 +26,7 @@ def test_the_distance_law_moves_along_the_ray_and_shrinks_the_length_error(e: np
     u = distance(e, delta)
     assert (u * np.conj(e)).imag == pytest.approx(0.0, abs=1e-10)
     assert (u * np.conj(e)).real * (abs(e) - abs(delta)) <= 0.0
+    assert abs(u) == pytest.approx(abs(abs(e) ** 2 - abs(delta) ** 2) * abs(e), abs=1e-12)
 
 
 @given(vectors, vectors)
