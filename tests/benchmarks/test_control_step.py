@@ -9,7 +9,7 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from formation import AngleLaw, SensingGraph, TargetFormation
 from robots import World, make_world
 from scenarios.experiment import Experiment
-from scenarios.simulation import Controller, initial_headings
+from scenarios.simulation import Controller
 
 Target = Callable[[str, float, float, str], None]
 
@@ -19,8 +19,7 @@ def ready(experiment: Experiment, seed: int = 0) -> tuple[World, Controller]:
     rng = np.random.default_rng(seed)
     world = make_world(
         experiment.plant,
-        experiment.start,
-        initial_headings(experiment, rng),
+        *experiment.starts.draw(rng),
         nid=experiment.nid,
         robot=experiment.robot,
         saturation=experiment.scenario.robot.saturation,
@@ -41,7 +40,7 @@ def test_control_step_of_six_robots(
 
     def run(world: World, controller: Controller) -> None:
         for _ in range(100):
-            controller.begin_period()
+            controller.begin_period(world.points, world.headings, 0.033)
             world.step(controller, 0.033)
 
     benchmark.pedantic(run, setup=lambda: (ready(experiment), {}), rounds=300, warmup_rounds=5)

@@ -31,6 +31,7 @@ Cli = Callable[..., Answer]
 def cli(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Cli:
     """Runs the command in an empty folder."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("COLUMNS", raising=False)  # test runners in parallel set it for their own terminal
 
     def run(*arguments: str) -> Answer:
         monkeypatch.setattr(sys, "argv", ["formation", *arguments])
@@ -73,7 +74,7 @@ def test_list_names_every_scenario_of_the_library(cli: Cli) -> None:
 def test_show_prints_assumptions_rates_and_end_of_every_scenario(cli: Cli, name: str) -> None:
     answer = cli("show", name)
     assert (answer.code, answer.err) == (DONE, "")
-    for word in ("Assumptions", "rate (1/s)", "Predicted end", "translation", "alpha("):
+    for word in ("Assumptions", "late rate (1/s)", "Predicted end", "xi (m)", "alpha("):
         assert word in answer.out
 
 
@@ -166,7 +167,7 @@ CHANGES = {
     "title=3": ["title: expected a valid string, got 3"],
     "title.x=3": ["title is not a table"],
     "agents=3": ["agents: expected an array, got 3"],
-    "agents=[]": ["agents: expected at least 3 entries, got []"],
+    "agents=[]": ["agents: expected either agents or random_formation"],
     "agents=[1, 2, 3]": ["agents[1]: expected a table, got 1"],
     "agents.3=1": ["agents is not a table"],
     "agents.9.start=[0, 0]": ["no entry 9"],
@@ -212,11 +213,11 @@ FILES = {
     b"x=" + b"[" * 5000 + b"]" * 5000: ["not valid TOML"],
     b"x=" + b"1" * 5000: ["not valid TOML"],
     b"agents = 3": ["title: missing"],
-    b'title="a"\nduration_s=1\nagents=[{id=1},{id=2,neighbours=[1]}]': ["agents: expected at least 3 entries"],
+    b'title="a"\nduration_s=1\nagents=[{id=1},{id=2,neighbours=[1]}]': ["agents: expected at least 3, got 2"],
     b'title="a"\nduration_s=1\nagents=[{id=1},{id=2},{id=3}]': ["clause (i)", "agent 2"],
     b'title="a"\nagents=[{id=1},{id=2},{id=3}]': ["expected either duration_s or phases, got neither"],
     b'title="a"\nduration_s=1\nagents=[{id=1},{id=2,neighbours=[1]},{id=3,neighbours=[1,2]}]': [
-        "agents[id 1].target: missing"
+        "target.angles_deg: missing, and the agents have no target positions either"
     ],
 }
 

@@ -15,7 +15,7 @@ Varied = Callable[..., Experiment]
 def test_the_shape_experiment_is_the_papers(shape: Experiment) -> None:
     assert shape.n == 6
     np.testing.assert_array_equal(shape.graph.neighbours + 1, [[1, 2], [2, 3], [1, 4], [1, 4]])
-    np.testing.assert_array_equal(shape.start[[0, 1, 5]], [[0.0, 0.5], [-0.5, 0.0], [0.6, 0.2]])
+    np.testing.assert_array_equal(shape.initial_points(0)[[0, 1, 5]], [[0.0, 0.5], [-0.5, 0.0], [0.6, 0.2]])
     assert [phase.duration for phase in shape.phases] == [60.0]
     assert shape.nid.projection_distance == 0.025
     assert len(shape.angles) == 8
@@ -34,7 +34,7 @@ def test_without_listed_angles_every_followers_triangle_is_measured(varied: Vari
 def test_the_order_of_the_agents_in_a_file_does_not_matter(shape: Experiment, varied: Varied) -> None:
     agents = [agent.model_dump(exclude_none=True) for agent in shape.scenario.agents]
     turned = varied(agents=[{**a, "neighbours": list(a["neighbours"])[::-1]} for a in agents[::-1]])
-    assert (turned.start == shape.start).all()
+    assert (turned.initial_points(0) == shape.initial_points(0)).all()
     assert (turned.graph.neighbours == shape.graph.neighbours).all()
 
 

@@ -16,7 +16,7 @@ Moving = Callable[..., Experiment]
 def controller(experiment: Experiment, phase: Phase) -> Controller:
     made = Controller(experiment, [np.random.default_rng(0)], ())
     made.begin_phase(phase)
-    made.begin_period()
+    made.begin_period(experiment.initial_points(0), np.tile([1.0, 0.0], (experiment.n, 1)), 0.033)
     return made
 
 
@@ -29,7 +29,7 @@ def test_a_command_is_unchanged_when_every_state_that_its_robot_does_not_sense_i
     command = controller(experiment, experiment.phases[0])
     rng = np.random.default_rng(0)
     theta = rng.uniform(-np.pi, np.pi, experiment.n)
-    points, headings = experiment.start, np.stack([np.cos(theta), np.sin(theta)], axis=-1)
+    points, headings = experiment.initial_points(0), np.stack([np.cos(theta), np.sin(theta)], axis=-1)
     whole = command(points, headings)
     for k in range(experiment.n):
         edges = experiment.graph.edges
@@ -46,9 +46,9 @@ def test_a_command_does_change_when_a_sensed_neighbour_moves(shape: Experiment) 
     command = controller(shape, shape.phases[0])
     headings = np.tile([1.0, 0.0], (shape.n, 1))
     for k, i in shape.graph.edges[1:]:
-        moved = shape.start.copy()
+        moved = shape.initial_points(0).copy()
         moved[i] += 0.1
-        assert (command(moved, headings)[k] != command(shape.start, headings)[k]).any()
+        assert (command(moved, headings)[k] != command(shape.initial_points(0), headings)[k]).any()
 
 
 @pytest.mark.parametrize("first_follower", LAWS)
@@ -68,7 +68,7 @@ def test_the_motion_changes_where_one_robot_works_in_a_mirrored_frame(shape: Exp
     mirror[2] = [1.0, -1.0]
 
     def end(frames: np.ndarray) -> np.ndarray:
-        points = shape.start.copy()
+        points = shape.initial_points(0).copy()
         for _ in range(2000):
             relative = (points[observed] - points[observer]) * frames[observer]
             points = points + 0.01 * shape.law(relative) * frames
@@ -91,7 +91,7 @@ def test_turning_and_shifting_the_whole_experiment_turns_and_shifts_the_motion(
     def run(turned: float) -> np.ndarray:
         here = varied(f"plant.name={plant}", *_headings(np.add(heading_deg, turned)), duration=5.0)
         if turned:
-            starts = here.start @ rotated + shift
+            starts = here.initial_points(0) @ rotated + shift
             changes = [f"agents.{k}.start={p}" for k, p in enumerate(starts.tolist(), start=1)]
             here = varied(f"plant.name={plant}", *_headings(np.add(heading_deg, turned)), *changes, duration=5.0)
         return simulate(here).points

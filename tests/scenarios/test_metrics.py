@@ -57,6 +57,7 @@ def standing(experiment: Experiment, points: np.ndarray, steps: int = 4) -> Traj
         points=np.tile(points, (steps, 1, 1)),
         wheel_speeds=np.zeros((steps, experiment.n, 2)),
         phase=np.zeros(steps, dtype=np.intp),
+        active=np.ones((steps, experiment.n), dtype=bool),
     )
 
 
@@ -69,7 +70,7 @@ def test_robots_that_stand_in_the_shape_have_converged_from_the_start(shape: Exp
 
 
 def test_the_error_sum_adds_up_absolute_errors(shape: Experiment) -> None:
-    found = measure(shape, standing(shape, shape.start))
+    found = measure(shape, standing(shape, shape.initial_points(0)))
     assert found.outcome == "not_converged"
     assert found.settling_time is None
     np.testing.assert_allclose(found.error_sum, np.abs(found.angle_errors).sum(axis=1))
@@ -77,14 +78,14 @@ def test_the_error_sum_adds_up_absolute_errors(shape: Experiment) -> None:
 
 def test_the_separation_is_between_collision_centres(shape: Experiment) -> None:
     """With l = 0.025 m the projected points are the collision centres."""
-    found = measure(shape, standing(shape, shape.start))
-    p = shape.start
+    found = measure(shape, standing(shape, shape.initial_points(0)))
+    p = shape.initial_points(0)
     nearest = min(np.linalg.norm(p[a] - p[b]) for a in range(6) for b in range(a))
     assert found.separation.distance == pytest.approx(nearest)
 
 
 def test_a_run_that_ends_in_no_number_has_diverged_and_completed_no_phase(shape: Experiment) -> None:
-    run = standing(shape, shape.start)
+    run = standing(shape, shape.initial_points(0))
     run.points[-1] = run.poses[-1] = np.nan
     found = measure(shape, run)
     assert found.outcome == "diverged"

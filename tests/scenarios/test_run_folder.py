@@ -128,10 +128,11 @@ def test_a_trajectory_read_again_is_bit_identical(tmp_path: Path) -> None:
         points=rng.normal(size=(5, 3, 2)),
         wheel_speeds=np.full((5, 3, 2), np.nan),
         phase=np.arange(5),
+        active=rng.uniform(size=(5, 3)) < 0.5,
     )
     run.save(tmp_path / "trajectory.npz", rng.normal(size=(5, 4)))
     again = Trajectory.read(tmp_path / "trajectory.npz")
-    for name in ("t", "poses", "points", "wheel_speeds", "phase"):
+    for name in ("t", "poses", "points", "wheel_speeds", "phase", "active"):
         assert getattr(again, name).tobytes() == getattr(run, name).tobytes()
 
 

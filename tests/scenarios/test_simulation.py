@@ -22,7 +22,7 @@ NOISE = ("sensor.position_noise_m=0.005", "sensor.bearing_noise_deg=1.0")
 def fitted_rate(experiment: Experiment, agent: int, begin: float, end: float) -> float:
     """Decay rate, 1/s, of an agent's distance to its predicted end, fitted to the logarithm over [begin, end] s."""
     run = simulate(experiment)
-    predicted = end_configuration(experiment.target, *experiment.start[: agents.FIRST_ORDINARY])
+    predicted = end_configuration(experiment.target, *experiment.initial_points(0)[: agents.FIRST_ORDINARY])
     row = int(agents.rows(agent))
     distance = np.linalg.norm(run.points[:, row] - predicted[row], axis=-1)
     window = (run.t >= begin) & (run.t <= end)
