@@ -34,6 +34,7 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
         "safety": "none",
         "versions": versions(),
         "duration_s": float(trajectory.t[-1]),
+        "planned_duration_s": float(sum(phase.duration for phase in experiment.phases)),
         "outcome": metrics.outcome,
         "goal_rad": experiment.goal,
         "angles": [

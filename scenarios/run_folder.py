@@ -1,4 +1,4 @@
-"""The run folder: written whole or not at all."""
+"""The run folder: written whole or not at all, and read back."""
 
 from __future__ import annotations
 
@@ -8,16 +8,37 @@ import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from scenarios.errors import InputError
+from scenarios.experiment import Experiment, build
+from scenarios.load import ScenarioFile, validate
+from scenarios.trajectory import Trajectory
 
 RESULT = "result.json"
 TRAJECTORY = "trajectory.npz"
 RECORDING = "recording.rrd"
 SCENARIO = "scenario.json"
 """The validated scenario, with all changes of the command line: what replay and plots need besides the states."""
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A finished run, as its folder holds it.
+
+    Attributes:
+        folder: where it was read from.
+        experiment: what was run, rebuilt from the scenario with all changes of the command line.
+        trajectory: the recorded states.
+        result: the content of ``result.json``.
+    """
+
+    folder: Path
+    experiment: Experiment
+    trajectory: Trajectory
+    result: dict[str, Any]
 
 
 def default_path(scenario: str, plant: str, seed: int) -> Path:
@@ -33,7 +54,7 @@ def writing(folder: Path) -> Iterator[Path]:
     replaced; anything else is left alone.
 
     Raises:
-        InputError: the place cannot be written, or holds something that is not a run.
+        InputError: the place cannot be written, now or later (a full disk), or holds something that is not a run.
     """
     try:
         place = Path(os.path.realpath(folder))  # what a link points to is replaced, not the link
@@ -74,6 +95,50 @@ def write_text(path: Path, text: str, option: str) -> None:
         path.write_text(text, encoding="utf-8")
     except OSError as error:
         raise InputError(f"{option} {path}: cannot be written: {error.strerror}") from error
+
+
+def read(folder: Path) -> Run:
+    """Read a run folder back.
+
+    Raises:
+        InputError: it is not a run folder, or one of its files is missing, damaged or of another run.
+    """
+    if not folder.exists():
+        raise InputError(f"{folder}: no such run folder")
+    if not is_run(folder):
+        raise InputError(f"{folder}: not a run folder, it holds no {RESULT} and {TRAJECTORY}")
+    result, scenario_path = _read_json(folder / RESULT), folder / SCENARIO
+    for key, kind in (("scenario", str), ("seed", int), ("planned_duration_s", float)):
+        if not isinstance(result.get(key), kind):
+            raise InputError(f"{folder / RESULT}: {key}: expected {kind.__name__}, got {result.get(key)!r}")
+    scenario = validate(_read_json(scenario_path), str(scenario_path))
+    file = ScenarioFile(result["scenario"], str(scenario_path), "", scenario)
+    experiment = build(file, result["planned_duration_s"])
+    trajectory = Trajectory.read(folder / TRAJECTORY)
+    rows, n = trajectory.t.size, experiment.n
+    expected = {
+        "t": (max(rows, 1),),
+        "poses": (rows, n, 3),
+        "points": (rows, n, 2),
+        "wheel_speeds": (rows, n, 2),
+        "phase": (rows,),
+        "active": (rows, n),
+    }
+    for key, shape in expected.items():
+        found = getattr(trajectory, key).shape
+        if found != shape:
+            raise InputError(f"{folder / TRAJECTORY}: {key}: expected the shape {shape}, got {found}")
+    return Run(folder, experiment, trajectory, result)
+
+
+def _read_json(path: Path) -> dict[str, Any]:
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: cannot be read: {error}") from error
+    if not isinstance(content, dict):
+        raise InputError(f"{path}: expected a JSON object, got {type(content).__name__}")
+    return content
 
 
 def write_json(path: Path, content: Any) -> None:
