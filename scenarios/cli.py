@@ -109,6 +109,28 @@ def keys(markdown: Path | None) -> None:
         write_text(markdown, reference.markdown(), "--markdown")
 
 
+@cli.command()
+@click.argument("run_folder", metavar="RUN", type=click.Path(path_type=Path))
+@click.option("--out", type=click.Path(path_type=Path), help="Folder of the figures.  [default: RUN]")
+@click.option(
+    "--format", "formats", multiple=True, type=click.Choice(["png", "pdf", "svg"]), default=("png", "pdf"),
+    show_default=True, help="May be given several times.",
+)  # fmt: skip
+def plot(run_folder: Path, out: Path | None, formats: tuple[str, ...]) -> None:
+    """Draw the paper's figures of RUN, the folder of a finished run."""
+    from scenarios.figures import names_for
+    from scenarios.figures import plot as draw
+    from scenarios.metrics import measure
+    from scenarios.run_folder import read
+
+    finished = read(run_folder)
+    experiment, trajectory = finished.experiment, finished.trajectory
+    metrics = measure(experiment, trajectory)
+    console = _console()
+    for path in draw(experiment, trajectory, metrics, out or run_folder, names_for(experiment), formats):
+        console.print(str(path), markup=False)
+
+
 def _console() -> Console:
     from rich.console import Console
 

@@ -9,10 +9,11 @@ from rich.markup import escape
 
 from scenarios import run_folder
 from scenarios.experiment import Experiment
-from scenarios.metrics import measure
+from scenarios.metrics import Metrics, measure
 from scenarios.report import print_result, progress_bar
 from scenarios.result import result
 from scenarios.simulation import simulate
+from scenarios.trajectory import Trajectory
 
 
 def run_to_folder(experiment: Experiment, seed: int, out: Path | None, console: Console) -> bool:
@@ -33,6 +34,13 @@ def run_to_folder(experiment: Experiment, seed: int, out: Path | None, console: 
         trajectory.save(scratch / run_folder.TRAJECTORY, metrics.angle_errors)
         run_folder.write_json(scratch / run_folder.SCENARIO, experiment.scenario.model_dump(mode="json"))
         run_folder.write_json(scratch / run_folder.RESULT, summary)
+        _draw_overview(experiment, trajectory, metrics, scratch)
     print_result(console, summary)
     console.print(f"run folder: {escape(str(folder))}")
     return metrics.outcome == "converged"
+
+
+def _draw_overview(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, folder: Path) -> None:
+    from scenarios.figures import OVERVIEW, plot  # matplotlib takes as long to load as the run takes
+
+    plot(experiment, trajectory, metrics, folder, [OVERVIEW], ["png", "pdf"])

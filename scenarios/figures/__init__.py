@@ -1,0 +1,7 @@
+"""The paper's figures from a run. Importing this package loads matplotlib; nothing else in the project does."""
+
+from scenarios.figures.catalogue import FIGURES as FIGURES
+from scenarios.figures.catalogue import OVERVIEW as OVERVIEW
+from scenarios.figures.catalogue import names_for as names_for
+from scenarios.figures.catalogue import plot as plot
+from scenarios.figures.style import FORMATS as FORMATS

@@ -1,0 +1,65 @@
+"""Which figures there are, which of them make sense for a run, and their files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from types import MappingProxyType
+
+from matplotlib.figure import Figure
+
+from scenarios.experiment import Experiment
+from scenarios.figures.decay import decay
+from scenarios.figures.graphs import graph
+from scenarios.figures.motion import motion
+from scenarios.figures.separation import separation
+from scenarios.figures.style import print_style, render
+from scenarios.files import write_whole
+from scenarios.metrics import Metrics
+from scenarios.trajectory import Trajectory
+
+FIGURES = MappingProxyType({"graph": graph, "motion": motion, "decay": decay, "separation": separation})
+"""Each figure by name: a function of the experiment, the trajectory and the metrics of a run."""
+
+OVERVIEW = "motion"
+"""The figure that every run leaves in its folder."""
+
+Draw = Callable[[Experiment, Trajectory, Metrics], Figure]
+
+
+def names_for(experiment: Experiment) -> list[str]:
+    """Names of the figures that make sense: no decay rates for a law that has none, no separation without bodies."""
+    without = set()
+    if experiment.scenario.law.name != "angle":
+        without.add("decay")
+    if experiment.plant == "single_integrator":
+        without.add("separation")
+    return [name for name in FIGURES if name not in without]
+
+
+def plot(
+    experiment: Experiment,
+    trajectory: Trajectory,
+    metrics: Metrics,
+    folder: Path,
+    names: Iterable[str],
+    formats: Iterable[str],
+) -> list[Path]:
+    """Draw figures into ``folder`` as ``figure-NAME.FORMAT``, each file whole or not at all.
+
+    Returns:
+        The files, in the order of ``names`` and ``formats``.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    written = []
+    with print_style():
+        for name in names:
+            draw: Draw = FIGURES[name]
+            figure = draw(experiment, trajectory, metrics)
+            for form in formats:
+                path = folder / f"figure-{name}.{form}"
+                write_whole(path, render(figure, form))
+                written.append(path)
+    return written

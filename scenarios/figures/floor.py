@@ -1,0 +1,95 @@
+"""What stands and moves on the floor: the arena, robots as oriented bodies, edges and trails, in metres."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import to_rgb
+from matplotlib.patches import Rectangle
+from numpy.typing import NDArray
+
+from formation import SensingGraph
+from robots import Arena, Chassis
+from scenarios.experiment import Experiment
+from scenarios.palette import FAINT, INK, agent_colour
+from scenarios.trajectory import Trajectory
+
+Real = NDArray[np.float64]
+Limits = tuple[float, float, float, float]
+"""(x low, x high, y low, y high), metres."""
+
+BEYOND = "#EDEDED"
+"""Colour of the ground beyond the floor."""
+
+MARGIN = 0.17
+"""Metres around all that is shown."""
+
+
+def limits(arena: Arena, poses: Real) -> Limits:
+    """The least that shows the whole floor and every finite pose (..., 3)."""
+    places = poses[..., :2].reshape(-1, 2)
+    shown = np.concatenate([arena.corners, places[np.isfinite(places).all(axis=1)]])
+    (x0, y0), (x1, y1) = shown.min(axis=0) - MARGIN, shown.max(axis=0) + MARGIN
+    return float(x0), float(x1), float(y0), float(y1)
+
+
+def prepare(axes: Axes, arena: Arena, shown: Limits) -> None:
+    """Limits, labels with units, equal aspect, and the floor."""
+    x0, x1, y0, y1 = shown
+    axes.set(
+        xlim=(x0, x1), ylim=(y0, y1), xlabel="\U0001d465 (m)", ylabel="\U0001d466 (m)", aspect="equal", facecolor=BEYOND
+    )
+    corner, width, height = arena.corners[0], arena.x[1] - arena.x[0], arena.y[1] - arena.y[0]
+    edge = 1.6 if arena.walls else 0.5
+    axes.add_patch(Rectangle(tuple(corner), width, height, facecolor="white", edgecolor=INK, linewidth=edge, zorder=0))
+
+
+def draw_trails(axes: Axes, trajectory: Trajectory) -> None:
+    """The path of each projected point, one line per agent in the order of the agents."""
+    for row in range(trajectory.points.shape[1]):
+        x, y = trajectory.points[:, row].T
+        axes.plot(x, y, color=agent_colour(row), linewidth=0.7, alpha=0.75, zorder=2, label=f"trail {row}")
+
+
+def draw_edges(axes: Axes, graph: SensingGraph, points: Real, colour: str = FAINT) -> None:
+    """The formation graph's edges between points (n, 2): sensed ones solid, the added ones dashed."""
+    segments = points[graph.formation_edges]
+    sensed = len(graph.edges)
+    axes.add_collection(LineCollection(list(segments[:sensed]), colors=colour, linewidths=0.5, zorder=1))
+    dashed = LineCollection(list(segments[sensed:]), colors=colour, linewidths=0.5, linestyles=[(0, (3, 2))], zorder=1)
+    axes.add_collection(dashed)
+
+
+def draw_robots(axes: Axes, experiment: Experiment, poses: Real, points: Real, hollow: bool = False) -> None:
+    """Robots at poses (n, 3): chassis with a wedge that points ahead; dots at points (n, 2) where a plant has no bodies.
+
+    ``hollow`` robots are white with a coloured outline.
+    """
+    colours = [to_rgb(agent_colour(row)) for row in range(len(poses))]
+    face = [(1.0, 1.0, 1.0)] * len(poses) if hollow else colours
+    if experiment.plant == "single_integrator":
+        axes.scatter(*points.T, s=12.0, facecolors=face, edgecolors=colours, linewidths=0.7, zorder=4)
+        return
+    chassis = experiment.robot.chassis
+    axes.add_collection(
+        PolyCollection(
+            list(placed(chassis.outline, poses)), facecolors=face, edgecolors=colours, linewidths=0.5, zorder=4
+        )
+    )
+    noses = list(placed(wedge(chassis), poses))
+    axes.add_collection(PolyCollection(noses, facecolors=colours if hollow else "white", linewidths=0.0, zorder=5))
+
+
+def wedge(chassis: Chassis) -> Real:
+    """(3, 2) a triangle on the chassis that points ahead, metres, in the frame of the axle's centre."""
+    back, front, side = -0.20 * chassis.length, 0.40 * chassis.length, 0.28 * chassis.width
+    return np.array([[back, -side], [front, 0.0], [back, side]]) + [chassis.centre_offset, 0.0]
+
+
+def placed(outline: Real, poses: Real) -> Real:
+    """(n, q, 2) an outline (q, 2) in the robot's frame, moved to each of the poses (n, 3), metres."""
+    cos, sin = np.cos(poses[:, 2, None]), np.sin(poses[:, 2, None])
+    x, y = outline.T
+    turned = np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
+    return turned + poses[:, None, :2]

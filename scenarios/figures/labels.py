@@ -1,0 +1,72 @@
+"""Where labels go, so that they cover neither each other nor what they name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from scenarios.figures.style import SMALL
+from scenarios.palette import INK
+
+Real = NDArray[np.float64]
+
+POINTS_PER_INCH = 72.0
+_DIRECTIONS = 16
+_RINGS = (1.0, 1.5, 2.2)
+"""Distances from the anchor that are tried, in multiples of the nearest."""
+
+_ENOUGH, _STEP_BACK = 0.85, 0.25
+"""Clearance that counts as enough, and what going one ring out must gain, in heights of the type."""
+
+
+def points_per_metre(axes: Axes) -> float:
+    """Scale of axes with equal aspect."""
+    figure = axes.get_figure()
+    inches = figure.get_size_inches()[0] * axes.get_position().width if figure is not None else 0.0
+    low, high = axes.get_xlim()
+    return float(inches * POINTS_PER_INCH / (high - low))
+
+
+class Labels:
+    """Places labels one after another on axes with equal aspect, each in the emptiest direction around its anchor.
+
+    Args:
+        axes: with their final limits.
+        occupied: (q, 2) points, metres, that no label should cover.
+    """
+
+    def __init__(self, axes: Axes, occupied: Real) -> None:
+        self._axes = axes
+        self._scale = points_per_metre(axes)
+        finite = occupied.reshape(-1, 2)
+        self._occupied = finite[np.isfinite(finite).all(axis=1)] * self._scale
+
+    def put(self, anchor: Sequence[float] | Real, text: str, distance: float, size: float = SMALL) -> None:
+        """Write ``text`` near ``anchor`` (2,), metres, with its centre ``distance`` points away or somewhat more."""
+        centre = np.asarray(anchor, dtype=np.float64) * self._scale
+        half_width = 0.25 * size * len(text)
+        turn = np.exp(2j * np.pi * (0.25 + np.arange(_DIRECTIONS) / _DIRECTIONS))  # straight above is tried first
+        direction = np.stack([turn.real, turn.imag], axis=1)
+        rings = [direction * (ring * distance + half_width * np.abs(direction[:, :1])) for ring in _RINGS]
+        candidates = centre + np.concatenate(rings)
+        loss = _STEP_BACK * size * np.repeat(np.arange(len(_RINGS)), _DIRECTIONS)
+        best = candidates[int((self._clearance(candidates, half_width, size) - loss).argmax())]
+        across = np.array([[-half_width, 0.0], [0.0, 0.0], [half_width, 0.0]])
+        self._occupied = np.concatenate([self._occupied, best + across])
+        x, y = best / self._scale
+        self._axes.text(x, y, text, fontsize=size, color=INK, ha="center", va="center_baseline", zorder=6)
+
+    def _clearance(self, candidates: Real, half_width: float, size: float) -> Real:
+        """How empty each candidate (c, 2) is, points; the same for all that are empty enough, negative off the axes."""
+        (x0, x1), (y0, y1) = (
+            np.array(limits) * self._scale for limits in (self._axes.get_xlim(), self._axes.get_ylim())
+        )
+        offset = self._occupied - candidates[:, None, :]
+        gap = np.hypot(np.maximum(np.abs(offset[..., 0]) - half_width, 0.0), offset[..., 1])
+        nearest = gap.min(axis=1, initial=np.inf)
+        inside = (candidates[:, 0] - half_width > x0) & (candidates[:, 0] + half_width < x1)
+        inside &= (candidates[:, 1] - 0.5 * size > y0) & (candidates[:, 1] + 0.5 * size < y1)
+        return np.where(inside, np.minimum(nearest, _ENOUGH * size), -size)

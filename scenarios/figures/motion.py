@@ -1,0 +1,114 @@
+"""The paper's second and third figure: where the robots go, and how their angle errors vanish."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from formation import agents
+from scenarios.experiment import Experiment
+from scenarios.figures.floor import Limits, draw_edges, draw_robots, draw_trails, limits, prepare
+from scenarios.figures.labels import Labels, points_per_metre
+from scenarios.figures.style import COLUMN, SMALL, panel, sheet
+from scenarios.figures.timelines import MANY, draw_error_sum, draw_errors, mark_phases
+from scenarios.metrics import Metrics
+from scenarios.palette import INK
+from scenarios.trajectory import Trajectory
+
+LEFT, RIGHT = 0.44, 0.11
+SUM_HEIGHT, EACH_HEIGHT, GAP = 0.72, 0.85, 0.14
+TALLEST_FLOOR = 3.2
+"""Inches."""
+
+ROOM_FOR_TIMES = 0.2
+"""Metres above the highest robot, where snapshots are labelled with their times."""
+
+FIRST_GREY, LAST_GREY = 0.82, 0.30
+"""Edges of the snapshots, darker with time."""
+
+
+def motion(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> Figure:
+    """Start, end of each phase and trajectories on the floor; sum of the angle errors and each of them over time."""
+    shown = limits(experiment.arena, trajectory.poses)
+    if len(experiment.phases) > 1:
+        shown = (*shown[:3], shown[3] + ROOM_FOR_TIMES)
+    width = COLUMN - LEFT - RIGHT
+    height = width * (shown[3] - shown[2]) / (shown[1] - shown[0])
+    if height > TALLEST_FLOOR:
+        width, height = width * TALLEST_FLOOR / height, TALLEST_FLOOR
+    named = len(experiment.angles) <= MANY
+    legend = 0.11 * -(-len(experiment.angles) // 4) + 0.05 if named else 0.14
+    each = 0.34 + legend
+    sums = each + EACH_HEIGHT + GAP
+    floor = sums + SUM_HEIGHT + (0.64 if len(experiment.phases) > 1 else 0.52)
+    figure = sheet(floor + height + 0.2)
+    _floor(panel(figure, LEFT, floor, width, height), experiment, trajectory, metrics, shown)
+    lower = panel(figure, LEFT, each, COLUMN - LEFT - RIGHT, EACH_HEIGHT)
+    upper = panel(figure, LEFT, sums, COLUMN - LEFT - RIGHT, SUM_HEIGHT, sharex=lower)
+    draw_error_sum(upper, experiment, trajectory, metrics)
+    draw_errors(lower, experiment, trajectory, metrics)
+    mark_phases(upper, experiment, names=True)
+    mark_phases(lower, experiment)
+    upper.tick_params(labelbottom=False)
+    above = 1.20 if len(experiment.phases) > 1 else 1.04
+    upper.legend(loc="lower center", bbox_to_anchor=(0.5, above), ncols=3)
+    if named:
+        handles, names = lower.get_legend_handles_labels()
+        figure.legend(handles, names, loc="lower center", ncols=4, bbox_to_anchor=(0.5, 0.02 / figure.get_figheight()))
+    else:
+        text = f"{len(experiment.angles)} angles, each in the colour of the agent at its vertex"
+        figure.text(0.5, 0.04 / figure.get_figheight(), text, fontsize=SMALL, ha="center", va="bottom")
+    figure.align_ylabels([upper, lower])
+    return figure
+
+
+def _floor(axes: Axes, experiment: Experiment, trajectory: Trajectory, metrics: Metrics, shown: Limits) -> None:
+    prepare(axes, experiment.arena, shown)
+    draw_trails(axes, trajectory)
+    rows = snapshot_rows(trajectory, metrics)
+    for row, grey in zip(rows, np.linspace(FIRST_GREY, LAST_GREY, len(rows)), strict=True):
+        draw_edges(axes, experiment.graph, trajectory.points[row], f"{grey:.3f}")
+        draw_robots(axes, experiment, trajectory.poses[row], trajectory.points[row], hollow=row == 0)
+    _label(axes, experiment, trajectory, rows)
+    markers = [
+        Line2D([], [], linestyle="", marker="s", markersize=4, color=INK, markerfacecolor="white", label="start"),
+        Line2D(
+            [],
+            [],
+            linestyle="",
+            marker="s",
+            markersize=4,
+            color=INK,
+            label="end" if len(rows) == 2 else "end of a phase",
+        ),
+    ]
+    axes.legend(handles=markers, loc="lower right", bbox_to_anchor=(1.0, 1.02), ncols=2)
+
+
+def snapshot_rows(trajectory: Trajectory, metrics: Metrics) -> list[int]:
+    """Rows of the trajectory that are drawn: the start, each phase's end, and the last finite state of a cut run."""
+    last = int(np.flatnonzero(np.isfinite(trajectory.poses).all(axis=(1, 2)))[-1])
+    return sorted({0, *(end.row for end in metrics.phases), last})
+
+
+def _label(axes: Axes, experiment: Experiment, trajectory: Trajectory, rows: list[int]) -> None:
+    body = experiment.robot.chassis.width
+    points = trajectory.points
+    trails = points[:: max(1, len(points) // 200)]
+    ends = points[rows][:, experiment.graph.formation_edges]
+    along = np.linspace(0.0, 1.0, 12)[:, None, None, None]
+    edges = ends[..., 0, :] * (1.0 - along) + ends[..., 1, :] * along
+    labels = Labels(axes, np.concatenate([trails.reshape(-1, 2), edges.reshape(-1, 2)]))
+    distance = 0.7 * body * points_per_metre(axes) + 3.5
+    size = SMALL if experiment.n <= MANY else 4.5
+    for row in (rows[-1], rows[0]):
+        for agent in range(experiment.n):
+            moved = np.linalg.norm(points[rows[-1], agent] - points[rows[0], agent])
+            if row == rows[-1] or moved > body:
+                labels.put(points[row, agent], str(agents.number(agent)), distance, size)
+    if len(rows) > 2:
+        for row in rows:
+            highest = points[row, points[row, :, 1].argmax()]
+            labels.put(highest, f"{trajectory.t[row]:g} s", distance + 1.0, SMALL + 0.5)
