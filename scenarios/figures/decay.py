@@ -133,5 +133,5 @@ def _note_push(axes: Axes, experiment: Experiment, trajectory: Trajectory, index
     predicted = predicted - ahead * np.array(experiment.phases[index].velocity)
     pushed = np.linalg.norm(trajectory.points[row] - predicted, axis=-1)[: agents.FIRST_ORDINARY]
     if pushed.max() > NOTEWORTHY:
-        text = f"agents 1 and 2 end {pushed[0]:.3f} m and {pushed[1]:.3f} m off their predicted places"
+        text = f"agents 1, 2 end {1e3 * pushed[0]:.0f} mm, {1e3 * pushed[1]:.0f} mm off prediction"
         axes.set_title(text, loc="right", fontsize=SMALL)

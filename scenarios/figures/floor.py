@@ -22,15 +22,16 @@ Limits = tuple[float, float, float, float]
 BEYOND = "#EDEDED"
 """Colour of the ground beyond the floor."""
 
-MARGIN = 0.17
-"""Metres around all that is shown."""
+MARGIN = 0.05
+"""Free ground around all that is shown, as a share of its longer side."""
 
 
 def limits(arena: Arena, poses: Real) -> Limits:
     """The least that shows the whole floor and every finite pose (..., 3)."""
     places = poses[..., :2].reshape(-1, 2)
     shown = np.concatenate([arena.corners, places[np.isfinite(places).all(axis=1)]])
-    (x0, y0), (x1, y1) = shown.min(axis=0) - MARGIN, shown.max(axis=0) + MARGIN
+    margin = MARGIN * np.ptp(shown, axis=0).max()
+    (x0, y0), (x1, y1) = shown.min(axis=0) - margin, shown.max(axis=0) + margin
     return float(x0), float(x1), float(y0), float(y1)
 
 
@@ -45,11 +46,11 @@ def prepare(axes: Axes, arena: Arena, shown: Limits) -> None:
     axes.add_patch(Rectangle(tuple(corner), width, height, facecolor="white", edgecolor=INK, linewidth=edge, zorder=0))
 
 
-def draw_trails(axes: Axes, trajectory: Trajectory) -> None:
+def draw_trails(axes: Axes, trajectory: Trajectory, width: float = 0.7) -> None:
     """The path of each projected point, one line per agent in the order of the agents."""
     for row in range(trajectory.points.shape[1]):
         x, y = trajectory.points[:, row].T
-        axes.plot(x, y, color=agent_colour(row), linewidth=0.7, alpha=0.75, zorder=2, label=f"trail {row}")
+        axes.plot(x, y, color=agent_colour(row), linewidth=width, alpha=0.75, zorder=2, label=f"trail {row}")
 
 
 def draw_edges(axes: Axes, graph: SensingGraph, points: Real, colour: str = FAINT) -> None:
@@ -62,14 +63,14 @@ def draw_edges(axes: Axes, graph: SensingGraph, points: Real, colour: str = FAIN
 
 
 def draw_robots(axes: Axes, experiment: Experiment, poses: Real, points: Real, hollow: bool = False) -> None:
-    """Robots at poses (n, 3): chassis with a wedge that points ahead; dots at points (n, 2) where a plant has no bodies.
+    """Robots at poses (n, 3): a chassis with a wedge that points ahead, white with a coloured outline if ``hollow``.
 
-    ``hollow`` robots are white with a coloured outline.
+    A plant without bodies has dots at its points (n, 2).
     """
     colours = [to_rgb(agent_colour(row)) for row in range(len(poses))]
     face = [(1.0, 1.0, 1.0)] * len(poses) if hollow else colours
     if experiment.plant == "single_integrator":
-        axes.scatter(*points.T, s=12.0, facecolors=face, edgecolors=colours, linewidths=0.7, zorder=4)
+        axes.scatter(points[:, 0], points[:, 1], s=12.0, facecolors=face, edgecolors=colours, linewidths=0.7, zorder=4)
         return
     chassis = experiment.robot.chassis
     axes.add_collection(

@@ -35,14 +35,15 @@ def graph(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> F
     right = panel(figure, COLUMN - 0.08 - SIDE, 0.50, SIDE, SIDE)
     positions = experiment.target.positions
     size = _node_size(positions)
+    width = 0.7 if experiment.n <= MANY else 0.3
     for axes in (left, right):
         _frame(axes, positions)
     for observer, observed in experiment.graph.edges:
-        left.add_patch(_arrow(positions[observer], positions[observed], size))
+        left.add_patch(_arrow(positions[observer], positions[observed], size, width))
     segments = positions[experiment.graph.formation_edges]
     sensed = len(experiment.graph.edges)
-    right.add_collection(LineCollection(list(segments[:sensed]), colors=INK, linewidths=0.7, zorder=1))
-    added = LineCollection(list(segments[sensed:]), colors=INK, linewidths=0.7, linestyles=[(0, (4, 2))], zorder=1)
+    right.add_collection(LineCollection(list(segments[:sensed]), colors=INK, linewidths=width, zorder=1))
+    added = LineCollection(list(segments[sensed:]), colors=INK, linewidths=width, linestyles=[(0, (4, 2))], zorder=1)
     right.add_collection(added)
     for axes in (left, right):
         _nodes(axes, positions, size)
@@ -81,16 +82,16 @@ def _frame(axes: Axes, positions: Real) -> None:
     axes.set(xlim=(centre[0] - half, centre[0] + half), ylim=(centre[1] - half, centre[1] + half), aspect="equal")
 
 
-def _arrow(tail: Real, head: Real, node: float) -> FancyArrowPatch:
+def _arrow(tail: Real, head: Real, node: float, width: float) -> FancyArrowPatch:
     gap = node / 2.0 + 0.6
     return FancyArrowPatch(
         tuple(tail),
         tuple(head),
         arrowstyle="-|>,head_length=0.38,head_width=0.16",
-        mutation_scale=max(node, 6.0),
+        mutation_scale=max(node, 5.0),
         shrinkA=gap,
         shrinkB=gap,
-        linewidth=0.6,
+        linewidth=width,
         color=INK,
         joinstyle="miter",
         zorder=2,
@@ -100,7 +101,9 @@ def _arrow(tail: Real, head: Real, node: float) -> FancyArrowPatch:
 def _nodes(axes: Axes, positions: Real, size: float) -> None:
     edges = [to_rgb(agent_colour(row)) for row in range(len(positions))]
     faces = [tuple(1.0 - TINT * (1.0 - c) for c in edge) for edge in edges]
-    axes.scatter(*positions.T, s=size**2, facecolors=faces, edgecolors=edges, linewidths=0.9, zorder=3)
+    axes.scatter(
+        positions[:, 0], positions[:, 1], s=size**2, facecolors=faces, edgecolors=edges, linewidths=0.9, zorder=3
+    )
     if len(positions) > MANY:
         return
     for row, (x, y) in enumerate(positions):

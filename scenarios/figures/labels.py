@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
@@ -22,9 +20,13 @@ _ENOUGH, _STEP_BACK = 0.85, 0.25
 """Clearance that counts as enough, and what going one ring out must gain, in heights of the type."""
 
 
+_LEGIBLE = 0.35
+"""Clearance, in heights of the type, below which a label on crowded axes is left out."""
+
+
 def points_per_metre(axes: Axes) -> float:
     """Scale of axes with equal aspect."""
-    figure = axes.get_figure()
+    figure = axes.get_figure(root=True)
     inches = figure.get_size_inches()[0] * axes.get_position().width if figure is not None else 0.0
     low, high = axes.get_xlim()
     return float(inches * POINTS_PER_INCH / (high - low))
@@ -44,16 +46,22 @@ class Labels:
         finite = occupied.reshape(-1, 2)
         self._occupied = finite[np.isfinite(finite).all(axis=1)] * self._scale
 
-    def put(self, anchor: Sequence[float] | Real, text: str, distance: float, size: float = SMALL) -> None:
-        """Write ``text`` near ``anchor`` (2,), metres, with its centre ``distance`` points away or somewhat more."""
-        centre = np.asarray(anchor, dtype=np.float64) * self._scale
+    def put(self, anchor: Real, text: str, distance: float, size: float = SMALL, crowded: bool = False) -> None:
+        """Write ``text`` near ``anchor`` (2,), metres, with its centre ``distance`` points away or somewhat more.
+
+        Where the axes are ``crowded``, a label without a free place is left out.
+        """
+        centre = anchor * self._scale
         half_width = 0.25 * size * len(text)
         turn = np.exp(2j * np.pi * (0.25 + np.arange(_DIRECTIONS) / _DIRECTIONS))  # straight above is tried first
         direction = np.stack([turn.real, turn.imag], axis=1)
         rings = [direction * (ring * distance + half_width * np.abs(direction[:, :1])) for ring in _RINGS]
         candidates = centre + np.concatenate(rings)
         loss = _STEP_BACK * size * np.repeat(np.arange(len(_RINGS)), _DIRECTIONS)
-        best = candidates[int((self._clearance(candidates, half_width, size) - loss).argmax())]
+        score = self._clearance(candidates, half_width, size) - loss
+        if crowded and score.max() < _LEGIBLE * size:
+            return
+        best = candidates[int(score.argmax())]
         across = np.array([[-half_width, 0.0], [0.0, 0.0], [half_width, 0.0]])
         self._occupied = np.concatenate([self._occupied, best + across])
         x, y = best / self._scale

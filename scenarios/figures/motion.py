@@ -22,8 +22,8 @@ SUM_HEIGHT, EACH_HEIGHT, GAP = 0.72, 0.85, 0.14
 TALLEST_FLOOR = 3.2
 """Inches."""
 
-ROOM_FOR_TIMES = 0.2
-"""Metres above the highest robot, where snapshots are labelled with their times."""
+ROOM_FOR_TIMES = 0.04
+"""Room above the highest robot, where snapshots are labelled with their times, as a share of the width."""
 
 FIRST_GREY, LAST_GREY = 0.82, 0.30
 """Edges of the snapshots, darker with time."""
@@ -33,7 +33,7 @@ def motion(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> 
     """Start, end of each phase and trajectories on the floor; sum of the angle errors and each of them over time."""
     shown = limits(experiment.arena, trajectory.poses)
     if len(experiment.phases) > 1:
-        shown = (*shown[:3], shown[3] + ROOM_FOR_TIMES)
+        shown = (*shown[:3], shown[3] + ROOM_FOR_TIMES * (shown[1] - shown[0]))
     width = COLUMN - LEFT - RIGHT
     height = width * (shown[3] - shown[2]) / (shown[1] - shown[0])
     if height > TALLEST_FLOOR:
@@ -66,10 +66,12 @@ def motion(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> 
 
 def _floor(axes: Axes, experiment: Experiment, trajectory: Trajectory, metrics: Metrics, shown: Limits) -> None:
     prepare(axes, experiment.arena, shown)
-    draw_trails(axes, trajectory)
+    few = experiment.n <= MANY
+    draw_trails(axes, trajectory, 0.7 if few else 0.3)
     rows = snapshot_rows(trajectory, metrics)
     for row, grey in zip(rows, np.linspace(FIRST_GREY, LAST_GREY, len(rows)), strict=True):
-        draw_edges(axes, experiment.graph, trajectory.points[row], f"{grey:.3f}")
+        if few:
+            draw_edges(axes, experiment.graph, trajectory.points[row], f"{grey:.3f}")
         draw_robots(axes, experiment, trajectory.poses[row], trajectory.points[row], hollow=row == 0)
     _label(axes, experiment, trajectory, rows)
     markers = [
@@ -103,11 +105,11 @@ def _label(axes: Axes, experiment: Experiment, trajectory: Trajectory, rows: lis
     labels = Labels(axes, np.concatenate([trails.reshape(-1, 2), edges.reshape(-1, 2)]))
     distance = 0.7 * body * points_per_metre(axes) + 3.5
     size = SMALL if experiment.n <= MANY else 4.5
-    for row in (rows[-1], rows[0]):
+    for row in (rows[-1], rows[0]) if experiment.n <= MANY else rows[-1:]:
         for agent in range(experiment.n):
             moved = np.linalg.norm(points[rows[-1], agent] - points[rows[0], agent])
             if row == rows[-1] or moved > body:
-                labels.put(points[row, agent], str(agents.number(agent)), distance, size)
+                labels.put(points[row, agent], str(agents.number(agent)), distance, size, crowded=experiment.n > MANY)
     if len(rows) > 2:
         for row in rows:
             highest = points[row, points[row, :, 1].argmax()]

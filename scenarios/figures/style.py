@@ -23,7 +23,7 @@ SMALL = 6.5
 
 FORMATS = ("png", "pdf", "svg")
 
-_STYLE: dict[str, Any] = {
+_STYLE: Any = {
     "font.family": "STIXGeneral",
     "mathtext.fontset": "stix",
     "font.size": 7.5,

@@ -81,7 +81,7 @@ def written(name: str) -> str:
 
 
 def unwrapped(errors: Real) -> Real:
-    """Wrapped angles (T,), radians, with NaN for each state after a jump between -pi and pi: no line across the axes."""
+    """Wrapped angles (T,), radians, with NaN after each jump between -pi and pi: no line across the axes."""
     broken = np.array(errors)
     broken[1:][np.abs(np.diff(errors)) > np.pi] = np.nan
     return broken
