@@ -131,6 +131,27 @@ def plot(run_folder: Path, out: Path | None, formats: tuple[str, ...]) -> None:
         console.print(str(path), markup=False)
 
 
+@cli.command()
+@click.argument("run_folder", metavar="RUN", type=click.Path(path_type=Path))
+@click.option("--format", "form", type=click.Choice(["gif", "mp4"]), default="gif", show_default=True)
+@click.option("--speed", default=4.0, show_default=True, metavar="X", help="Simulated seconds per second.")
+@click.option("--fps", default=20.0, show_default=True, metavar="N", help="Frames per second.")
+@click.option("--out", type=click.Path(path_type=Path), help="Folder of the film.  [default: RUN]")
+def animate(run_folder: Path, form: str, speed: float, fps: float, out: Path | None) -> None:
+    """Film RUN, the folder of a finished run, as a GIF or with ffmpeg as an MP4."""
+    from scenarios.figures import animate as film
+    from scenarios.metrics import measure
+    from scenarios.report import progress_bar
+    from scenarios.run_folder import read
+
+    finished = read(run_folder)
+    experiment, trajectory = finished.experiment, finished.trajectory
+    console, path = _console(), (out or run_folder) / f"animation.{form}"
+    with progress_bar(console, path.name) as advance:
+        film(experiment, trajectory, measure(experiment, trajectory), path, speed, fps, advance)
+    console.print(str(path), markup=False)
+
+
 def _console() -> Console:
     from rich.console import Console
 

@@ -4,4 +4,5 @@ from scenarios.figures.catalogue import FIGURES as FIGURES
 from scenarios.figures.catalogue import OVERVIEW as OVERVIEW
 from scenarios.figures.catalogue import names_for as names_for
 from scenarios.figures.catalogue import plot as plot
+from scenarios.figures.encode import animate as animate
 from scenarios.figures.style import FORMATS as FORMATS

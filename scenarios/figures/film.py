@@ -1,0 +1,157 @@
+"""A film of a run: robots on the floor, above the sum of their angle errors.
+
+What stands still is drawn once. Each frame adds the new piece of every trail to that picture, copies it, and draws the
+few artists that move; so the cost of a frame does not grow with the film.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from formation import agents
+from scenarios.experiment import Experiment
+from scenarios.figures.floor import limits, placed, prepare, wedge
+from scenarios.figures.style import SMALL, panel
+from scenarios.figures.timelines import MANY, draw_error_sum, mark_phases
+from scenarios.metrics import Metrics
+from scenarios.palette import FAINT, INK, agent_colour
+from scenarios.tracking import reference
+from scenarios.trajectory import Trajectory
+
+Pixels = NDArray[np.uint8]
+
+WIDTH, TALLEST_FLOOR = 5.0, 4.2
+"""Inches."""
+
+DOTS_PER_INCH = 144
+LEFT, RIGHT, BOTTOM, ERRORS, BETWEEN, TOP = 0.50, 0.14, 0.36, 0.70, 0.56, 0.26
+
+
+class Film:
+    """The frames of a run.
+
+    Args:
+        experiment, trajectory, metrics: of the run; states that are not finite are left out.
+        speed: simulated seconds per second of film.
+        fps: frames per second.
+
+    Attributes:
+        rows: (f,) rows of the trajectory, one per frame: the states nearest to the frames' times, the last included.
+        size: (width, height) of a frame, pixels, both even as video codecs want them.
+    """
+
+    def __init__(
+        self, experiment: Experiment, trajectory: Trajectory, metrics: Metrics, speed: float, fps: float
+    ) -> None:
+        self._experiment, self._trajectory = experiment, trajectory
+        self.rows = frame_rows(trajectory, speed, fps)
+        self._figure, (floor_width, floor_height) = _sheet(experiment, trajectory)
+        self._canvas = FigureCanvasAgg(self._figure)
+        width, height = self._canvas.get_width_height()
+        self.size = width - width % 2, height - height % 2
+        shown = limits(experiment.arena, trajectory.poses)
+        self._floor = panel(self._figure, LEFT, BOTTOM + ERRORS + BETWEEN, floor_width, floor_height)
+        prepare(self._floor, experiment.arena, shown)
+        self._floor.set_title(f"{experiment.file.name}, {experiment.plant}, {speed:g} x;  + predicted places", loc="left", pad=4.0)
+        self._errors = panel(self._figure, LEFT, BOTTOM, WIDTH - LEFT - RIGHT, ERRORS)
+        draw_error_sum(self._errors, experiment, trajectory, metrics)
+        self._errors.set_xlabel("time (s)")
+        mark_phases(self._errors, experiment, names=True)
+        self._predicted = reference(experiment, trajectory)
+        self._make_movers()
+
+    def frames(self) -> Iterator[Pixels]:
+        """Each frame in turn as (height, width, 4) RGBA; the array is overwritten by the next frame."""
+        self._canvas.draw()
+        still = self._canvas.copy_from_bbox(self._figure.bbox)
+        width, height = self.size
+        before = int(self.rows[0])
+        for row in self.rows.tolist():
+            self._canvas.restore_region(still)
+            self._trails.set_segments(list(np.moveaxis(self._trajectory.points[before : row + 1], 1, 0)))
+            self._floor.draw_artist(self._trails)
+            still = self._canvas.copy_from_bbox(self._figure.bbox)
+            self._move(row)
+            before = row
+            yield np.asarray(self._canvas.buffer_rgba())[:height, :width]
+
+    def last(self) -> Pixels:
+        """The last frame with whole trails, as (height, width, 4) RGBA."""
+        self._canvas.draw()
+        end = int(self.rows[-1])
+        self._trails.set_segments(list(np.moveaxis(self._trajectory.points[: end + 1], 1, 0)))
+        self._floor.draw_artist(self._trails)
+        self._move(end)
+        width, height = self.size
+        return np.array(self._canvas.buffer_rgba())[:height, :width]
+
+    def _make_movers(self) -> None:
+        n = self._experiment.n
+        colours = [agent_colour(row) for row in range(n)]
+        self._trails = LineCollection([], colors=colours, linewidths=0.9, alpha=0.75)
+        self._edges = LineCollection([], colors=FAINT, linewidths=0.6)
+        self._ghosts = Line2D([], [], linestyle="", marker="+", markersize=5.0, markeredgewidth=0.7, color=INK)
+        self._bodies = PolyCollection([], facecolors=colours, edgecolors="white", linewidths=0.3)
+        self._noses = PolyCollection([], facecolors="white", linewidths=0.0)
+        self._dots = Line2D([], [], linestyle="", marker="o", markersize=4.0, color=INK)
+        self._numbers = [
+            self._floor.text(0.0, 0.0, str(agents.number(row)), fontsize=SMALL, ha="left", va="bottom")
+            for row in range(n if n <= MANY else 0)
+        ]
+        self._clock = self._floor.text(1.0, 1.02, "", transform=self._floor.transAxes, ha="right", va="bottom")
+        self._cursor = self._errors.axvline(0.0, color=INK, linewidth=0.6)
+        moving: list[Artist] = [self._edges, self._ghosts, self._bodies, self._noses, self._dots]
+        for artist in (self._trails, *moving):
+            self._floor.add_artist(artist)
+        for artist in (self._trails, *moving, *self._numbers, self._clock, self._cursor):
+            artist.set_animated(True)
+
+    def _move(self, row: int) -> None:
+        """Draw what moves, as it is in a row of the trajectory."""
+        points, poses = self._trajectory.points[row], self._trajectory.poses[row]
+        chassis = self._experiment.robot.chassis
+        self._edges.set_segments(list(points[self._experiment.graph.formation_edges]))
+        self._ghosts.set_data(*self._predicted[row].T)
+        if self._experiment.plant == "single_integrator":
+            self._dots.set_data(*points.T)
+        else:
+            self._bodies.set_verts(list(placed(chassis.outline, poses)))
+            self._noses.set_verts(list(placed(wedge(chassis), poses)))
+        for artist in (self._edges, self._ghosts, self._bodies, self._noses, self._dots):
+            self._floor.draw_artist(artist)
+        for number, point in zip(self._numbers, points + 0.6 * chassis.width, strict=False):
+            number.set_position((point[0], point[1]))
+            self._floor.draw_artist(number)
+        t = float(self._trajectory.t[row])
+        phases = self._experiment.phases
+        phase = f"{phases[self._trajectory.phase[row]].name}, " if len(phases) > 1 else ""
+        self._clock.set_text(f"{phase}{t:.1f} s")
+        self._floor.draw_artist(self._clock)
+        self._cursor.set_xdata([t, t])
+        self._errors.draw_artist(self._cursor)
+
+
+def frame_rows(trajectory: Trajectory, speed: float, fps: float) -> NDArray[np.intp]:
+    """(f,) rows of the finite states nearest to the times 0, speed / fps, 2 speed / fps, ..., and the last one."""
+    t = trajectory.t[np.isfinite(trajectory.poses).all(axis=(1, 2))]
+    times = np.arange(t[0], t[-1], speed / fps)
+    return np.append(np.searchsorted((t[1:] + t[:-1]) / 2.0, times), len(t) - 1)
+
+
+def _sheet(experiment: Experiment, trajectory: Trajectory) -> tuple[Figure, tuple[float, float]]:
+    """A figure, and the size of its floor, inches."""
+    x0, x1, y0, y1 = limits(experiment.arena, trajectory.poses)
+    width = WIDTH - LEFT - RIGHT
+    height = width * (y1 - y0) / (x1 - x0)
+    if height > TALLEST_FLOOR:
+        width, height = width * TALLEST_FLOOR / height, TALLEST_FLOOR
+    total = BOTTOM + ERRORS + BETWEEN + height + TOP
+    return Figure(figsize=(WIDTH, total), dpi=DOTS_PER_INCH), (width, height)
