@@ -64,7 +64,7 @@ class Trajectory:
             InputError: the file is missing or damaged.
         """
         try:
-            with np.load(path) as data:
+            with path.open("rb") as file, np.load(file) as data:  # numpy leaves a damaged archive open
                 return cls(*(data[field.name] for field in fields(cls)))
         except Exception as error:  # numpy and zipfile raise many kinds for damaged files
             raise InputError(f"{path}: cannot be read: {error}") from error

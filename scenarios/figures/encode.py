@@ -28,6 +28,8 @@ GIF_FPS_LIMIT = 50.0
 COLOURS = 128
 """Of a GIF's palette; enough for the agents' colours and the steps between them and white."""
 
+NEARLY_WHITE = 248
+
 OnFrame = Callable[[int, int], None]
 
 
@@ -77,7 +79,10 @@ def _gif(film: Film, path: Path, fps: float, on_frame: OnFrame) -> None:
     ends = np.rint(100.0 * np.arange(1, total + 1) / fps)
     durations = (10.0 * np.diff(ends, prepend=0.0)).astype(int)
     durations[-1] += int(1000.0 * HOLD)
-    first.save(path, save_all=True, append_images=images, duration=durations.tolist(), loop=0, optimize=False)
+    with path.open("wb") as file:
+        first.save(
+            file, "GIF", save_all=True, append_images=images, duration=durations.tolist(), loop=0, optimize=False
+        )
 
 
 def _reduced(film: Film, on_frame: OnFrame) -> Iterator[Image.Image]:
@@ -90,10 +95,11 @@ def _reduced(film: Film, on_frame: OnFrame) -> Iterator[Image.Image]:
 
 
 def _palette(pixels: Pixels) -> Image.Image:
-    """A picture that carries a palette for the colours of a frame, pure white among them."""
+    """A picture that carries a palette for the colours of a frame, with pure white in place of all nearly white."""
     found = _rgb(pixels).quantize(COLOURS - 1, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).getpalette() or []
+    colours = np.array(found, dtype=np.uint8).reshape(-1, 3)[: COLOURS - 1]
     palette = Image.new("P", (1, 1))
-    palette.putpalette([255, 255, 255, *found[: 3 * (COLOURS - 1)]])
+    palette.putpalette([255, 255, 255, *colours[colours.min(axis=1) < NEARLY_WHITE].ravel().tolist()])
     return palette
 
 

@@ -45,6 +45,7 @@ class Film:
 
     Attributes:
         rows: (f,) rows of the trajectory, one per frame: the states nearest to the frames' times, the last included.
+        floor: the axes on which the robots move.
         size: (width, height) of a frame, pixels, both even as video codecs want them.
     """
 
@@ -58,9 +59,11 @@ class Film:
         width, height = self._canvas.get_width_height()
         self.size = width - width % 2, height - height % 2
         shown = limits(experiment.arena, trajectory.poses)
-        self._floor = panel(self._figure, LEFT, BOTTOM + ERRORS + BETWEEN, floor_width, floor_height)
-        prepare(self._floor, experiment.arena, shown)
-        self._floor.set_title(f"{experiment.file.name}, {experiment.plant}, {speed:g} x;  + predicted places", loc="left", pad=4.0)
+        self.floor = panel(self._figure, LEFT, BOTTOM + ERRORS + BETWEEN, floor_width, floor_height)
+        prepare(self.floor, experiment.arena, shown)
+        self.floor.set_title(
+            f"{experiment.file.name}, {experiment.plant}, {speed:g} x;  + predicted places", loc="left", pad=4.0
+        )
         self._errors = panel(self._figure, LEFT, BOTTOM, WIDTH - LEFT - RIGHT, ERRORS)
         draw_error_sum(self._errors, experiment, trajectory, metrics)
         self._errors.set_xlabel("time (s)")
@@ -77,7 +80,7 @@ class Film:
         for row in self.rows.tolist():
             self._canvas.restore_region(still)
             self._trails.set_segments(list(np.moveaxis(self._trajectory.points[before : row + 1], 1, 0)))
-            self._floor.draw_artist(self._trails)
+            self.floor.draw_artist(self._trails)
             still = self._canvas.copy_from_bbox(self._figure.bbox)
             self._move(row)
             before = row
@@ -88,7 +91,7 @@ class Film:
         self._canvas.draw()
         end = int(self.rows[-1])
         self._trails.set_segments(list(np.moveaxis(self._trajectory.points[: end + 1], 1, 0)))
-        self._floor.draw_artist(self._trails)
+        self.floor.draw_artist(self._trails)
         self._move(end)
         width, height = self.size
         return np.array(self._canvas.buffer_rgba())[:height, :width]
@@ -103,14 +106,14 @@ class Film:
         self._noses = PolyCollection([], facecolors="white", linewidths=0.0)
         self._dots = Line2D([], [], linestyle="", marker="o", markersize=4.0, color=INK)
         self._numbers = [
-            self._floor.text(0.0, 0.0, str(agents.number(row)), fontsize=SMALL, ha="left", va="bottom")
+            self.floor.text(0.0, 0.0, str(agents.number(row)), fontsize=SMALL, ha="left", va="bottom")
             for row in range(n if n <= MANY else 0)
         ]
-        self._clock = self._floor.text(1.0, 1.02, "", transform=self._floor.transAxes, ha="right", va="bottom")
+        self._clock = self.floor.text(1.0, 1.02, "", transform=self.floor.transAxes, ha="right", va="bottom")
         self._cursor = self._errors.axvline(0.0, color=INK, linewidth=0.6)
         moving: list[Artist] = [self._edges, self._ghosts, self._bodies, self._noses, self._dots]
         for artist in (self._trails, *moving):
-            self._floor.add_artist(artist)
+            self.floor.add_artist(artist)
         for artist in (self._trails, *moving, *self._numbers, self._clock, self._cursor):
             artist.set_animated(True)
 
@@ -126,15 +129,15 @@ class Film:
             self._bodies.set_verts(list(placed(chassis.outline, poses)))
             self._noses.set_verts(list(placed(wedge(chassis), poses)))
         for artist in (self._edges, self._ghosts, self._bodies, self._noses, self._dots):
-            self._floor.draw_artist(artist)
+            self.floor.draw_artist(artist)
         for number, point in zip(self._numbers, points + 0.6 * chassis.width, strict=False):
             number.set_position((point[0], point[1]))
-            self._floor.draw_artist(number)
+            self.floor.draw_artist(number)
         t = float(self._trajectory.t[row])
         phases = self._experiment.phases
         phase = f"{phases[self._trajectory.phase[row]].name}, " if len(phases) > 1 else ""
         self._clock.set_text(f"{phase}{t:.1f} s")
-        self._floor.draw_artist(self._clock)
+        self.floor.draw_artist(self._clock)
         self._cursor.set_xdata([t, t])
         self._errors.draw_artist(self._cursor)
 

@@ -110,7 +110,9 @@ def test_a_maneuver_is_shown_at_its_start_and_at_the_end_of_each_phase(maneuver:
     figure = maneuver.draw("motion")
     assert {"0 s", "50 s", "90 s", "120 s"} <= set(texts(figure))
     edges = [c for c in figure.axes[0].collections if type(c) is LineCollection]
-    sensed = [np.array(c.get_segments()) for c in edges if len(c.get_segments()) == len(maneuver.experiment.graph.edges)]
+    sensed = [
+        np.array(c.get_segments()) for c in edges if len(c.get_segments()) == len(maneuver.experiment.graph.edges)
+    ]
     for row, segments in zip(rows, sensed, strict=True):
         np.testing.assert_allclose(segments, maneuver.trajectory.points[row][maneuver.experiment.graph.edges])
 
