@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -26,8 +27,8 @@ LEFT = frozenset(
 )
 """Columns of text; all others hold numbers and are aligned right."""
 
-PROGRESS_STEPS = 200
-"""Steps between two updates of a progress bar."""
+PROGRESS_INTERVAL = 0.1
+"""Seconds between two updates of a progress bar: more often cannot be read, and costs time."""
 
 
 @contextmanager
@@ -41,9 +42,12 @@ def progress_bar(console: Console, name: str) -> Iterator[Callable[[int, int], N
     )
     with Progress(*columns, console=console, transient=True) as progress:
         task = progress.add_task(escape(name))
+        due = time.monotonic()
 
         def advance(done: int, total: int) -> None:
-            if done % PROGRESS_STEPS == 0 or done == total:
+            nonlocal due
+            if (now := time.monotonic()) >= due or done == total:
+                due = now + PROGRESS_INTERVAL
                 progress.update(task, completed=done, total=total)
 
         yield advance

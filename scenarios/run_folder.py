@@ -10,12 +10,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from scenarios.errors import InputError
-from scenarios.experiment import Experiment, build
-from scenarios.load import ScenarioFile, validate
-from scenarios.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from scenarios.experiment import Experiment
+    from scenarios.trajectory import Trajectory
 
 RESULT = "result.json"
 TRAJECTORY = "trajectory.npz"
@@ -103,6 +104,11 @@ def read(folder: Path) -> Run:
     Raises:
         InputError: it is not a run folder, or one of its files is missing, damaged or of another run.
     """
+    # The command line imports this module before it knows its command; only reading needs the whole experiment.
+    from scenarios.experiment import build
+    from scenarios.load import ScenarioFile, validate
+    from scenarios.trajectory import Trajectory
+
     if not folder.exists():
         raise InputError(f"{folder}: no such run folder")
     if not is_run(folder):
