@@ -10,7 +10,7 @@ export RERUN_ANALYTICS_ENABLED := false
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install run test quick lint bench clean
+.PHONY: figures help install run test quick lint bench clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -38,6 +38,16 @@ lint: $(STAMP) ## ruff and mypy
 
 bench: $(STAMP) ## benchmarks, with their targets
 	$(BIN)/pytest tests/benchmarks --benchmark-only --benchmark-disable-gc
+
+figures: $(STAMP) ## draw the figures of the documents
+	$(BIN)/formation run shape --out runs/figures/shape
+	$(BIN)/formation run maneuver --out runs/figures/maneuver
+	$(BIN)/formation plot runs/figures/maneuver --format png
+	mkdir -p docs/images
+	cp runs/figures/shape/figure-motion.png docs/images/figure-shape.png
+	cp runs/figures/maneuver/figure-motion.png docs/images/figure-maneuver.png
+	cp runs/figures/maneuver/figure-graph.png runs/figures/maneuver/figure-decay.png \
+		runs/figures/maneuver/figure-separation.png docs/images
 
 clean: ## remove the environment, caches and runs
 	rm -rf $(VENV) runs build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache .benchmarks

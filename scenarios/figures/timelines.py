@@ -42,7 +42,8 @@ def mark_phases(axes: Axes, experiment: Experiment, names: bool = False) -> None
 def draw_error_sum(axes: Axes, experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> None:
     """The sum of the absolute angle errors on a log axis, with the goal and the time of settling."""
     t = trajectory.t
-    axes.semilogy(t, metrics.axle_error_sum, color=FAINT, linewidth=0.7, label="axle centres")
+    if experiment.plant != "single_integrator":  # which has no axles
+        axes.semilogy(t, metrics.axle_error_sum, color=FAINT, linewidth=0.7, label="axle centres")
     axes.semilogy(t, metrics.error_sum, color=INK, linewidth=0.9, label="projected points")
     axes.axhline(experiment.goal, color=INK, linewidth=0.5, linestyle=":", label=f"goal, {experiment.goal:g} rad")
     if metrics.settling_time is not None:
