@@ -30,6 +30,9 @@ COLOURS = 128
 
 NEARLY_WHITE = 248
 
+MAX_FRAMES = 20_000
+"""Over five minutes of film at 60 frames per second; more is a slip of the keys."""
+
 OnFrame = Callable[[int, int], None]
 
 
@@ -60,6 +63,11 @@ def animate(
     if not (np.isfinite(fps) and fps > 0.0) or (gif and fps > GIF_FPS_LIMIT):
         limit = f" up to {GIF_FPS_LIMIT:g}, which is what viewers of GIFs can show" if gif else ""
         raise InputError(f"--fps: expected a positive number{limit}, got {fps:g}")
+    wanted = trajectory.t[-1] * fps / speed
+    if not wanted <= MAX_FRAMES:
+        raise InputError(
+            f"--speed, --fps: expected at most {MAX_FRAMES} frames, {speed:g} and {fps:g} make {wanted:.3g}"
+        )
     ffmpeg = None if gif else shutil.which("ffmpeg")
     if not gif and ffmpeg is None:
         raise InputError("--format mp4: needs ffmpeg, which is not on the PATH; --format gif does not")

@@ -234,6 +234,14 @@ def test_two_drawings_of_one_run_are_the_same_bytes(shape: Ran, form: str) -> No
         assert render(shape.draw("graph"), form) == render(shape.draw("graph"), form)
 
 
+@pytest.mark.parametrize("form", FORMATS)
+def test_files_carry_neither_dates_nor_versions(shape: Ran, form: str) -> None:
+    with print_style():
+        content = render(shape.draw("separation"), form)
+    for mark in (b"CreationDate", b"<dc:date>", b"Matplotlib v", b"matplotlib.org", b"Software"):
+        assert mark not in content
+
+
 def test_labels_lie_inside_the_sheet(shape: Ran, maneuver: Ran) -> None:
     for run in (shape, maneuver):
         for name in FIGURES:

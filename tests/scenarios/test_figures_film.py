@@ -148,6 +148,12 @@ def test_an_interrupted_film_leaves_the_older_one_and_nothing_else(run: Run, tmp
     assert list(tmp_path.iterdir()) == [path]
 
 
+def test_a_film_of_countless_frames_is_refused(run: Run, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="at most 20000 frames"):
+        animate(*run, tmp_path / "a.gif", 1e-9, 20.0, silent)
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize(
     ("speed", "fps", "field"),
     [(0.0, 20.0, "--speed"), (np.nan, 20.0, "--speed"), (1.0, 0.0, "--fps"), (1.0, 60.0, "--fps")],
