@@ -191,7 +191,7 @@ def test_over_100_seeds_the_shape_is_reached_and_contact_is_physical(
     for seed in range(100):
         states.clear()
         run = simulate(shape, seed)
-        reached += measure(shape, run).error_sum[-1] < 0.01
+        reached += bool(measure(shape, run).error_sum[-1] < 0.01)
         depth = penetration(np.array(states))
         deepest = max(deepest, float(depth.max()))
         near = (depth > -5e-4).reshape(-1, SUBSTEPS, len(pairs)).any(axis=1)
