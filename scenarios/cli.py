@@ -86,7 +86,8 @@ def run(
 def laws(starts: int, markdown: Path | None) -> None:
     """Compare the angle law with the displacement, bearing and distance laws."""
     from scenarios import laws as comparison
-    from scenarios.report import print_laws, progress_bar
+    from scenarios.report import print_laws
+    from scenarios.terminal import progress_bar
 
     console = _console()
     with progress_bar(console, "laws") as advance:
@@ -141,8 +142,8 @@ def animate(run_folder: Path, form: str, speed: float, fps: float, out: Path | N
     """Film RUN, the folder of a finished run, as a GIF or with ffmpeg as an MP4."""
     from scenarios.figures import animate as film
     from scenarios.metrics import measure
-    from scenarios.report import progress_bar
     from scenarios.run_folder import read
+    from scenarios.terminal import progress_bar
 
     finished = read(run_folder)
     experiment, trajectory = finished.experiment, finished.trajectory

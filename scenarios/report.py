@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-from rich.table import Table
 
 from formation import agents, collision_margins, decay_rates, end_similarity
 from scenarios.experiment import Experiment
@@ -19,51 +14,13 @@ from scenarios.forecast import NEAR, PhaseForecast, forecast
 from scenarios.keys import keys
 from scenarios.laws import COMPASS_BIAS_DEG, Share
 from scenarios.load import library, load
+from scenarios.terminal import new_table
 from scenarios.tracking import predicted_late_rates
-
-LEFT = frozenset(
-    ("scenario", "title", "angle", "agent", "senses", "phase", "plant", "law", "measures", "frame", "fixes")
-    + ("key", "kind", "default", "meaning")
-)
-"""Columns of text; all others hold numbers and are aligned right."""
-
-PROGRESS_INTERVAL = 0.1
-"""Seconds between two updates of a progress bar: more often cannot be read, and costs time."""
-
-
-@contextmanager
-def progress_bar(console: Console, name: str) -> Iterator[Callable[[int, int], None]]:
-    """A progress bar that vanishes when the work is done; the block calls what it gets with (done, total)."""
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.percentage:.0f} %"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=console, transient=True) as progress:
-        task = progress.add_task(escape(name))
-        due = time.monotonic()
-
-        def advance(done: int, total: int) -> None:
-            nonlocal due
-            if (now := time.monotonic()) >= due or done == total:
-                due = now + PROGRESS_INTERVAL
-                progress.update(task, completed=done, total=total)
-
-        yield advance
-
-
-def _table(*columns: str, title: str | None = None) -> Table:
-    table = Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    for column in columns:
-        left = column in LEFT
-        table.add_column(column, justify="left" if left else "right", no_wrap=column not in ("title", "meaning"))
-    return table
 
 
 def print_library(console: Console) -> None:
     """The scenarios that come with the project."""
-    table = _table("scenario", "agents", "time (s)", "plant", "title")
+    table = new_table("scenario", "agents", "time (s)", "plant", "title")
     for name in library():
         s = load(name).scenario
         seconds = s.duration_s or sum(phase.duration_s for phase in s.phases)
@@ -81,7 +38,7 @@ def print_experiment(console: Console, experiment: Experiment, seed: int) -> Non
     _print_assumptions(console, experiment, start)
     _print_agents(console, experiment, start, predicted[-1].end)
     _print_forecast(console, experiment, predicted)
-    table = _table("angle", "target (deg)")
+    table = new_table("angle", "target (deg)")
     for name, value in zip(experiment.angles.names, np.degrees(experiment.target_angles), strict=True):
         table.add_row(name, f"{value:.4f}")
     console.print("\n[bold]Angles, counter-clockwise, alpha(vertex;from,to)[/bold]")
@@ -111,7 +68,7 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
     rates, late = decay_rates(target), predicted_late_rates(experiment)
     margins = collision_margins(target, start, end)
     still = len(experiment.phases) == 1 and not any(experiment.phases[0].velocity)  # the premise of Lemma 3
-    table = _table(
+    table = new_table(
         "agent",
         "senses",
         "depth",
@@ -148,7 +105,7 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
 
 
 def _print_forecast(console: Console, experiment: Experiment, predicted: list[PhaseForecast]) -> None:
-    table = _table(
+    table = new_table(
         "phase",
         "until (s)",
         "v_r (m/s)",
@@ -180,7 +137,7 @@ def _print_forecast(console: Console, experiment: Experiment, predicted: list[Ph
 
 def print_keys(console: Console) -> None:
     """The reference of the scenario file."""
-    table = _table("key", "kind", "default", "meaning")
+    table = new_table("key", "kind", "default", "meaning")
     for key in keys():
         table.add_row(key.name, key.kind, key.default, key.meaning)
     console.print(table, markup=False)
@@ -189,7 +146,7 @@ def print_keys(console: Console) -> None:
 def print_laws(console: Console, shares: list[Share]) -> None:
     """The comparison of laws."""
     biased = f"with {COMPASS_BIAS_DEG:g} deg compass error"
-    table = _table("law", "measures", "frame", "fixes", "right shape", biased)
+    table = new_table("law", "measures", "frame", "fixes", "right shape", biased)
     for share in shares:
         law = share.law
         table.add_row(law.name, law.measures, law.frame, law.fixes, f"{share.exact:.1%}", f"{share.biased:.1%}")
@@ -198,7 +155,7 @@ def print_laws(console: Console, shares: list[Share]) -> None:
 
 def print_result(console: Console, result: dict[str, Any]) -> None:
     """Final angle errors, predicted beside measured ends, and the testbed's verdict."""
-    table = _table("angle", "target (deg)", "final (deg)", "error (rad)", "axle error (rad)")
+    table = new_table("angle", "target (deg)", "final (deg)", "error (rad)", "axle error (rad)")
     for angle in result["angles"]:
         table.add_row(
             angle["name"],
@@ -232,7 +189,7 @@ def print_result(console: Console, result: dict[str, Any]) -> None:
 
 
 def _print_phases(console: Console, result: dict[str, Any]) -> None:
-    table = _table(
+    table = new_table(
         "phase",
         "until (s)",
         "angle error sum (rad)",
@@ -258,7 +215,7 @@ def _print_phases(console: Console, result: dict[str, Any]) -> None:
 def _print_ends(console: Console, result: dict[str, Any]) -> None:
     """Predicted beside measured: the end of the last phase and the late decay rates."""
     last, rates = result["phases"][-1], result["late_rates_per_s"]
-    table = _table(
+    table = new_table(
         "agent", "predicted end (m)", "measured (m)", "distance (m)", "predicted late rate (1/s)", "measured (1/s)"
     )
     for row, (predicted, measured, distance) in enumerate(

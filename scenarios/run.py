@@ -10,9 +10,10 @@ from rich.markup import escape
 from scenarios import run_folder
 from scenarios.experiment import Experiment
 from scenarios.metrics import Metrics, measure
-from scenarios.report import print_result, progress_bar
+from scenarios.report import print_result
 from scenarios.result import result
 from scenarios.simulation import simulate
+from scenarios.terminal import progress_bar
 from scenarios.trajectory import Trajectory
 
 

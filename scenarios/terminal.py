@@ -1,0 +1,52 @@
+"""What every printed report is made of: tables without borders, and a progress bar."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+LEFT = frozenset(
+    ("scenario", "title", "angle", "agent", "senses", "phase", "plant", "law", "measures", "frame", "fixes")
+    + ("key", "kind", "default", "meaning", "changes", "quantity", "result", "replay")
+)
+"""Columns of text; all others hold numbers and are aligned right."""
+
+PROGRESS_INTERVAL = 0.1
+"""Seconds between two updates of a progress bar: more often cannot be read, and costs time."""
+
+
+@contextmanager
+def progress_bar(console: Console, name: str) -> Iterator[Callable[[int, int], None]]:
+    """A progress bar that vanishes when the work is done; the block calls what it gets with (done, total)."""
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.percentage:.0f} %"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console, transient=True) as progress:
+        task = progress.add_task(escape(name))
+        due = time.monotonic()
+
+        def advance(done: int, total: int) -> None:
+            nonlocal due
+            if (now := time.monotonic()) >= due or done == total:
+                due = now + PROGRESS_INTERVAL
+                progress.update(task, completed=done, total=total)
+
+        yield advance
+
+
+def new_table(*columns: str, title: str | None = None) -> Table:
+    """An empty table with these columns."""
+    table = Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    for column in columns:
+        left = column in LEFT
+        table.add_column(column, justify="left" if left else "right", no_wrap=column not in ("title", "meaning"))
+    return table
