@@ -153,6 +153,40 @@ def animate(run_folder: Path, form: str, speed: float, fps: float, out: Path | N
     console.print(str(path), markup=False)
 
 
+@cli.command()
+@click.argument("scenarios", nargs=-1, metavar="[SCENARIO ...]")
+@click.option("--baselines", type=click.Path(path_type=Path), help="Their folder.  [default: the library's]")
+@click.option("--portable", is_flag=True, help="Allow the spread between machines on the baselines' own machine too.")
+@click.option("--junit", type=click.Path(path_type=Path, dir_okay=False), help="Write a JUnit XML report.")
+@click.option("--markdown", type=click.Path(path_type=Path, dir_okay=False), help="Write a Markdown report.")
+@click.option("--out", default="runs/check", show_default=True, type=click.Path(path_type=Path), help="For misses.")
+@click.option("--workers", type=click.IntRange(min=1), help="Processes.  [default: one per processor]")
+@click.option("--update", is_flag=True, help="Make the baselines anew instead, and show what changed.")
+def check(
+    scenarios: tuple[str, ...],
+    baselines: Path | None,
+    portable: bool,
+    junit: Path | None,
+    markdown: Path | None,
+    out: Path,
+    workers: int | None,
+    update: bool,
+) -> None:
+    """Run scenarios again and compare them with their baselines; all that have one, if none is named.
+
+    Exit code 1 on a miss. The worst misses leave run folders in --out.
+    """
+    from scenarios.comparison.command import check_command, update_command
+
+    if not update:
+        if not check_command(scenarios, baselines, portable, junit, markdown, out, workers, _console()):
+            raise SystemExit(MISSED)
+        return
+    if junit is not None or markdown is not None:
+        raise InputError(f"--{'markdown' if junit is None else 'junit'}: not together with --update")
+    update_command(scenarios, baselines, workers, _console())
+
+
 def _console() -> Console:
     from rich.console import Console
 
