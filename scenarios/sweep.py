@@ -1,0 +1,221 @@
+"""Monte Carlo: one scenario, many seeds, one row per run, and what the rows say together."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+
+import numpy as np
+
+from scenarios.errors import InputError
+from scenarios.experiment import Experiment, open_experiment
+from scenarios.metrics import measure
+from scenarios.pool import run_all
+from scenarios.run_folder import write_json
+from scenarios.simulation import periods, simulate
+from scenarios.trajectory import Trajectory
+
+ROWS, PARTIAL, SUMMARY = "rows.csv", "rows.partial.csv", "summary.json"
+"""Files of a sweep; the rows are partial until the last run is done."""
+
+SINGLE = "pymunk"
+"""The plant that holds one run; the others advance a batch of runs as one array."""
+
+BATCH_STATES = 1_000_000
+"""Robots times control periods that advance as one array: some 60 MB of states."""
+
+MOST_BATCHED = 100
+"""Runs in one batch; more are no faster and make progress coarse."""
+
+QUANTILES = (0.0, 0.05, 0.5, 0.95, 1.0)
+
+Z_95 = 1.959963984540054
+"""Standard normal quantile of a two-sided 95 % interval."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One run; the columns of ``rows.csv``. Empty cells stand for what did not happen."""
+
+    scenario: str
+    plant: str
+    seed: int
+    outcome: str
+    angle_error_sum_rad: float | None
+    axle_angle_error_sum_rad: float | None
+    settling_time_s: float | None
+    min_separation_m: float | None
+    accepted: bool
+    violations: str
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Runs that are made together."""
+
+    source: str
+    changes: tuple[str, ...]
+    seeds: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Share:
+    """A share of the runs with its 95 % interval (Wilson 1927)."""
+
+    share: float
+    low: float
+    high: float
+
+    @classmethod
+    def of(cls, count: int, total: int) -> Share:
+        """The share of ``count`` among ``total`` > 0 runs.
+
+        >>> Share.of(100, 100).low > 0.96
+        True
+        """
+        p, z = count / total, Z_95**2 / total
+        centre, half = p + z / 2.0, np.sqrt(z * (p * (1.0 - p) + z / 4.0))
+        return cls(p, max(0.0, float(centre - half) / (1.0 + z)), min(1.0, float(centre + half) / (1.0 + z)))
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What the rows say together.
+
+    Attributes:
+        runs: their number.
+        converged, accepted: shares of the runs.
+        quantiles: at :data:`QUANTILES`, by column; of the runs that have one; None where none has.
+    """
+
+    runs: int
+    converged: Share
+    accepted: Share
+    quantiles: dict[str, tuple[float, ...] | None]
+
+
+def parse_seeds(text: str) -> range:
+    """The seeds A to B - 1 of ``A:B``.
+
+    Raises:
+        InputError: that is not a range of seeds, or an empty one.
+
+    >>> parse_seeds("10:13")
+    range(10, 13)
+    """
+    match = re.fullmatch(r"(\d{1,18}):(\d{1,18})", text.strip())
+    if match is None or not int(match[1]) < int(match[2]):
+        raise InputError(f"--seeds {text[:40]}: expected A:B with 0 <= A < B, the seeds A to B - 1")
+    return range(int(match[1]), int(match[2]))
+
+
+def sweep(
+    source: str,
+    changes: tuple[str, ...],
+    seeds: range,
+    out: Path | None,
+    workers: int,
+    on_progress: Callable[[int, int], None],
+) -> tuple[Summary, Path]:
+    """Run every seed and write one row per run, in the order of the seeds, each as soon as it is there.
+
+    Args:
+        source: the scenario's library name or path.
+        changes: ``key=value`` texts, as with ``--set``.
+        seeds: one run each.
+        out: folder of the files; None for the default.
+        workers: number of processes. The rows do not depend on it.
+        on_progress: called with the number of runs done and of all runs.
+
+    Returns:
+        The summary, and the folder that it was written to.
+
+    Raises:
+        InputError: the scenario cannot be used, or the folder cannot be written.
+    """
+    experiment = open_experiment(source, changes)
+    experiment.initial_points(seeds[0])
+    name = f"sweep-{experiment.file.name}-{experiment.plant}-seeds{seeds[0]}-{seeds[-1]}"
+    folder = out or Path("runs") / name
+    size = batch_size(experiment)
+    batches = [Batch(source, changes, tuple(seeds[i : i + size])) for i in range(0, len(seeds), size)]
+    rows: list[Row] = []
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with (folder / PARTIAL).open("w", encoding="utf-8", newline="") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow([field.name for field in fields(Row)])
+            for finished in run_all(run_batch, batches, workers):
+                writer.writerows(list(asdict(row).values()) for row in finished)
+                file.flush()
+                rows += finished
+                on_progress(len(rows), len(seeds))
+        (folder / PARTIAL).replace(folder / ROWS)
+        summary = summarise(rows)
+        content = {"scenario_sha256": experiment.file.sha256, "changes": list(changes), "quantiles_at": QUANTILES}
+        write_json(folder / SUMMARY, {**content, **asdict(summary)})
+    except OSError as error:
+        raise InputError(f"--out {folder}: cannot be written: {error.strerror}") from error
+    return summary, folder
+
+
+def batch_size(experiment: Experiment) -> int:
+    """Runs that are made together: many on a plant without contact, one on pymunk."""
+    if experiment.plant == SINGLE:
+        return 1
+    period = experiment.scenario.plant.control_period_s
+    states = experiment.n * sum(periods(phase, period)[0] for phase in experiment.phases)
+    return max(1, min(MOST_BATCHED, BATCH_STATES // states))
+
+
+def run_batch(batch: Batch) -> list[Row]:
+    """The rows of a batch."""
+    experiment = open_experiment(batch.source, batch.changes)
+    return [_row(experiment, seed, run) for seed, run in zip(batch.seeds, _runs(experiment, batch.seeds), strict=True)]
+
+
+def _runs(experiment: Experiment, seeds: Sequence[int]) -> Iterator[Trajectory]:
+    if len(seeds) > 1:
+        together = simulate(experiment, seeds)
+        if np.isfinite(together.poses[-1]).all():
+            yield from (together.run(index) for index in range(len(seeds)))
+            return
+    # One by one; also where a run of the batch diverged, which ended it for all.
+    yield from (simulate(experiment, seed) for seed in seeds)
+
+
+def _row(experiment: Experiment, seed: int, trajectory: Trajectory) -> Row:
+    metrics = measure(experiment, trajectory)
+    return Row(
+        scenario=experiment.file.name,
+        plant=experiment.plant,
+        seed=seed,
+        outcome=metrics.outcome,
+        angle_error_sum_rad=_finite(metrics.error_sum[-1]),
+        axle_angle_error_sum_rad=_finite(metrics.axle_error_sum[-1]),
+        settling_time_s=metrics.settling_time,
+        min_separation_m=_finite(metrics.separation.distance.min()),
+        accepted=metrics.verdict.accepted,
+        violations=" ".join(violation.kind for violation in metrics.verdict.violations),
+    )
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def summarise(rows: Sequence[Row]) -> Summary:
+    """The summary of at least one row."""
+    quantiles = {}
+    for column in ("settling_time_s", "angle_error_sum_rad", "min_separation_m"):
+        values = np.array([value for row in rows if (value := getattr(row, column)) is not None])
+        quantiles[column] = tuple(np.quantile(values, QUANTILES).tolist()) if values.size else None
+    return Summary(
+        runs=len(rows),
+        converged=Share.of(sum(row.outcome == "converged" for row in rows), len(rows)),
+        accepted=Share.of(sum(row.accepted for row in rows), len(rows)),
+        quantiles=quantiles,
+    )
