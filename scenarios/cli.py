@@ -214,6 +214,25 @@ def sweep_command(
     print_sweep(console, summary, folder)
 
 
+@cli.command()
+@click.option("--markdown", type=click.Path(path_type=Path, dir_okay=False), help="Write the page to this file.")
+@click.option("--workers", type=click.IntRange(min=1), help="Processes.  [default: one per processor]")
+def reproduce(markdown: Path | None, workers: int | None) -> None:
+    """Put the paper's numbers beside what every plant measures."""
+    from scenarios import reproduction
+    from scenarios.pool import available_workers
+    from scenarios.terminal import progress_bar
+
+    console = _console()
+    with progress_bar(console, "reproduce") as advance:
+        results = reproduction.reproduce(workers or available_workers(), advance)
+    page = reproduction.markdown(results)
+    if markdown is None:
+        click.echo(page, nl=False)
+    else:
+        write_text(markdown, page, "--markdown")
+
+
 def _console() -> Console:
     from rich.console import Console
 
