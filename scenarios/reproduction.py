@@ -129,7 +129,7 @@ def _head() -> list[str]:
         "",
         "What Li, Shen, Jing, Song state as a number, and what each plant measures. Nothing here is written by hand:",
         "`formation reproduce --markdown docs/reproduction.md` makes this page. Scenarios run as the library has them,",
-        f"safety filter included. The paper draws the headings at random and does not give them; seed {SEED} draws them.",
+        f"safety filter included. Headings are random in the paper and not given; here seed {SEED} draws them.",
         f"Made with {made}.",
     ]
 

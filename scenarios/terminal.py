@@ -23,14 +23,14 @@ PROGRESS_INTERVAL = 0.1
 
 @contextmanager
 def progress_bar(console: Console, name: str) -> Iterator[Callable[[int, int], None]]:
-    """A progress bar that vanishes when the work is done; the block calls what it gets with (done, total)."""
+    """A progress bar on a terminal, gone when the work is done; the block calls what it gets with (done, total)."""
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
         TextColumn("{task.percentage:.0f} %"),
         TimeRemainingColumn(),
     )
-    with Progress(*columns, console=console, transient=True) as progress:
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task(escape(name))
         due = time.monotonic()
 

@@ -124,7 +124,7 @@ def baselines_in(folder: Path) -> list[Path]:
     """
     if not folder.is_dir():
         raise InputError(f"--baselines {folder}: no such folder")
-    return sorted(folder.glob("*.json"))
+    return sorted(folder.glob("*.json"), key=lambda path: path.stem)
 
 
 def path_of(scenario: str, folder: Path) -> Path:
