@@ -132,7 +132,7 @@ def test_seeds_that_are_no_range_are_refused(text: str) -> None:
 
 def test_a_folder_that_cannot_be_written_is_named_before_anything_runs(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("", encoding="utf-8")
-    with pytest.raises(InputError, match="--out .*cannot be written"):
+    with pytest.raises(InputError, match=r"--out .*cannot be written"):
         sweep("shape", SHORT, range(2), tmp_path / "file", 1, nothing)
 
 
