@@ -1,4 +1,4 @@
-"""The arena: the floor that the testbed grants, with or without walls around it."""
+"""The arena: the floor that the testbed grants, with or without walls around it, and what stands on it."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+from robots.obstacles import Obstacle
 
 
 @dataclass(frozen=True)
@@ -16,6 +18,7 @@ class Arena:
         x: (low, high), metres.
         y: (low, high), metres.
         walls: whether its sides are walls that stop a chassis.
+        obstacles: what stands on it.
 
     Raises:
         ValueError: a side is not finite or has no length.
@@ -24,6 +27,7 @@ class Arena:
     x: tuple[float, float]
     y: tuple[float, float]
     walls: bool = True
+    obstacles: tuple[Obstacle, ...] = ()
 
     def __post_init__(self) -> None:
         for axis, (low, high) in (("x", self.x), ("y", self.y)):
@@ -40,6 +44,12 @@ class Arena:
         """(4, 2) corners, metres, counter-clockwise."""
         (x0, x1), (y0, y1) = self.x, self.y
         return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+
+    @property
+    def half_planes(self) -> NDArray[np.float64]:
+        """(4, 3) rows (n_x, n_y, c) of the south, east, north and west side, metres: inside is n.p >= c."""
+        (x0, x1), (y0, y1) = self.x, self.y
+        return np.array([[0.0, 1.0, y0], [-1.0, 0.0, -x1], [0.0, -1.0, -y1], [1.0, 0.0, x0]])
 
 
 ROBOTARIUM_FLOOR = Arena(x=(-1.6, 1.6), y=(-1.0, 1.0))

@@ -56,6 +56,11 @@ class Chassis:
         return self.mass * (self.length**2 + self.width**2) / 12.0
 
     @property
+    def radius(self) -> float:
+        """Of the smallest circle about the box's centre that contains the box, metres."""
+        return float(np.hypot(self.length, self.width) / 2.0)
+
+    @property
     def outline(self) -> np.ndarray:
         """(4, 2) corners of the box, metres, counter-clockwise, in the frame of the axle's centre."""
         x, y = self.length / 2.0, self.width / 2.0

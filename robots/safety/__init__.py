@@ -1,0 +1,44 @@
+"""Safety filters: what stands between a law and the wheels, so that robots do not collide."""
+
+from __future__ import annotations
+
+from robots.arena import Arena
+from robots.drive import DifferentialDrive
+from robots.nid import NearIdentityDiffeomorphism
+from robots.safety.barrier import FilterSettings as FilterSettings
+from robots.safety.barrier import sampling_loss as sampling_loss
+from robots.safety.protocol import Noise as Noise
+from robots.safety.protocol import SafetyFilter as SafetyFilter
+
+FILTERS = ("none", "decentralised", "centralised", "robotarium")
+"""The filters by the name that scenario files and the command line use."""
+
+
+def make_filter(
+    name: str,
+    shape: tuple[int, ...],
+    drive: DifferentialDrive,
+    nid: NearIdentityDiffeomorphism,
+    settings: FilterSettings,
+    arena: Arena | None = None,
+) -> SafetyFilter | None:
+    """The filter ``name`` for robots (..., n), ``None`` for ``"none"``.
+
+    Raises:
+        ValueError: ``name`` is not one of :data:`FILTERS`, or the filter cannot hold a batch of runs.
+    """
+    if name == "none":
+        return None
+    if name == "decentralised":
+        from robots.safety.decentralised import DecentralisedFilter  # numba is loaded only where it is used
+
+        return DecentralisedFilter(shape, drive, nid, settings, arena)
+    if name == "centralised":
+        from robots.safety.centralised import CentralisedFilter
+
+        return CentralisedFilter(shape, drive, nid, settings, arena)
+    if name == "robotarium":
+        from robots.safety.certificate import RobotariumCertificate
+
+        return RobotariumCertificate(shape, drive, nid, arena)
+    raise ValueError(f"safety must be one of {', '.join(FILTERS)}, got {name!r}")

@@ -1,0 +1,103 @@
+"""The decentralised filter: every robot solves its own two-variable problem from what it senses."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robots.arena import Arena
+from robots.drive import DifferentialDrive
+from robots.nid import NearIdentityDiffeomorphism
+from robots.obstacles import pack
+from robots.safety import kernel
+from robots.safety.barrier import (
+    STUCK_LIMIT,
+    STUCK_TURN_LIMIT,
+    STUCK_TURN_RATE,
+    WHEEL_MARGIN,
+    FilterSettings,
+    turn_weight,
+)
+from robots.safety.protocol import Noise, Real
+
+
+class DecentralisedFilter:
+    """One period of robot i, with g the law without v_r, all in its body frame:
+
+    1. turn g left by ``turn`` x max_j (how near j is) (how much g drives at j) + (what a stuck robot adds);
+    2. scale g by the largest s <= 1 that keeps v_r + s g within the wheels' limits;
+    3. minimise |u - (v_r + s g)|^2 subject to the rows of :mod:`robots.safety.barrier`; if no u satisfies them, lower
+       all but the wheels' by the least amount that helps;
+    4. count the time tau without progress.
+
+    Robots, walls and obstacles enter by relative position within the sensing range and by nothing else. One robot's
+    infeasible problem changes no other robot's.
+
+    Args:
+        shape: (..., n) of the runs that advance together.
+        arena: its walls and obstacles; None for an endless floor.
+    """
+
+    def __init__(
+        self,
+        shape: tuple[int, ...],
+        drive: DifferentialDrive,
+        nid: NearIdentityDiffeomorphism,
+        settings: FilterSettings,
+        arena: Arena | None = None,
+    ) -> None:
+        self._constants = kernel.Constants(
+            safe_distance=float(settings.safe_distance),
+            sensing_range=float(settings.sensing_range),
+            clearance=float(settings.clearance),
+            gain=float(settings.gain),
+            turn=float(settings.turn),
+            stuck_time=float(settings.stuck_time),
+            stuck_limit=max(STUCK_LIMIT, settings.stuck_time + STUCK_TURN_LIMIT / STUCK_TURN_RATE),
+            stuck_turn_rate=STUCK_TURN_RATE,
+            stuck_turn_limit=STUCK_TURN_LIMIT,
+            speed_limit=drive.speed_limit * (1.0 - WHEEL_MARGIN),
+            turn_weight=turn_weight(drive, nid),
+        )
+        self._walls = arena.half_planes if arena is not None and arena.walls else np.empty((0, 3))
+        self._obstacles = pack(() if arena is None else arena.obstacles)
+        batch = (int(np.prod(shape[:-1])), shape[-1])
+        self._silence = np.empty((*batch, 0, 2))
+        self.intervention = np.zeros(shape)
+        self.relaxation = np.zeros(shape)
+        self.blockers: NDArray[np.int64] = np.full((*shape, kernel.BLOCKERS), -1, dtype=np.int64)
+        self.stuck = np.zeros(shape)
+        self._flat = tuple(a.reshape(*batch, *a.shape[len(shape) :]) for a in self._outputs())
+
+    def _outputs(self) -> tuple[NDArray[np.generic], ...]:
+        return self.intervention, self.relaxation, self.blockers, self.stuck
+
+    def filter(
+        self, points: Real, headings: Real, feedback: Real, common: Real, period: float, noise: Noise | None = None
+    ) -> Real:
+        """See :class:`robots.safety.SafetyFilter`."""
+        u = np.empty(points.shape)
+        intervention, relaxation, blockers, stuck = self._flat
+        batch = (*intervention.shape, 2)
+        turns, offsets = self._silence, self._silence
+        if noise is not None:
+            full = (*intervention.shape, -1, 2)
+            turns, offsets = noise.turns.reshape(full), noise.offsets.reshape(full)
+        kernel.step(
+            points.reshape(batch),
+            headings.reshape(batch),
+            feedback.reshape(batch),
+            common.reshape(batch),
+            stuck,
+            float(period),
+            self._constants,
+            self._walls,
+            *self._obstacles,
+            turns,
+            offsets,
+            u.reshape(batch),
+            intervention,
+            relaxation,
+            blockers,
+        )
+        return u

@@ -1,0 +1,60 @@
+"""What every safety filter offers, and what it says about itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Noise:
+    """One period's noise of what robots measure of other robots, walls and obstacles.
+
+    Columns are the n robots, the 4 walls and the obstacles, in the frame of the observer of the row.
+
+    Attributes:
+        turns: (..., n, n + 4 + O, 2) unit rotations.
+        offsets: (..., n, n + 4 + O, 2) metres.
+    """
+
+    turns: Real
+    offsets: Real
+
+
+class SafetyFilter(Protocol):
+    """A filter between the law and the wheels.
+
+    Attributes describe the last period:
+        intervention: (..., n) m/s, distance of the filtered velocity from the law's within the wheels' limits.
+        relaxation: (..., n) m/s, least amount by which the rows of a robot whose problem was infeasible had to be
+            lowered; 0 where it was feasible.
+        blockers: (..., n, 3) what those rows belong to: robots 0..n-1, walls n..n+3 (south, east, north, west), then
+            obstacles; -1 where there is none.
+        stuck: (..., n) seconds for which a robot has made no progress.
+    """
+
+    intervention: Real
+    relaxation: Real
+    blockers: NDArray[np.int64]
+    stuck: Real
+
+    def filter(
+        self, points: Real, headings: Real, feedback: Real, common: Real, period: float, noise: Noise | None = None
+    ) -> Real:
+        """Body-frame velocities (..., n, 2), m/s, that keep the robots apart for one period.
+
+        Args:
+            points: (..., n, 2) projected points, metres. A filter that is distributed uses their differences within the
+                sensing range alone.
+            headings: (..., n, 2) unit vectors.
+            feedback: (..., n, 2) the law without the common velocity, in body frames, m/s.
+            common: (..., n, 2) the common velocity v_r, in body frames, m/s.
+            period: seconds.
+            noise: of the measurements; None for perfect sensors.
+        """
+        ...
