@@ -63,11 +63,18 @@ def show(scenario: str, seed: int, changes: tuple[str, ...]) -> None:
 @click.argument("scenario")
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(min=0), help="Seed of all randomness.")
 @click.option("--plant", metavar="P", help="single_integrator, unicycle, saturated or pymunk.")
+@click.option("--safety", metavar="F", help="none, decentralised, centralised or robotarium.")
 @click.option("--duration", type=float, metavar="S", help="Seconds to run instead of the scenario's own.")
 @click.option("--set", "changes", multiple=True, metavar="KEY=VALUE", help="Change a key of the scenario.")
 @click.option("--out", type=click.Path(path_type=Path), help="Run folder.  [default: runs/SCENARIO-PLANT-seedN]")
 def run(
-    scenario: str, seed: int, plant: str | None, duration: float | None, changes: tuple[str, ...], out: Path | None
+    scenario: str,
+    seed: int,
+    plant: str | None,
+    safety: str | None,
+    duration: float | None,
+    changes: tuple[str, ...],
+    out: Path | None,
 ) -> None:
     """Run SCENARIO (a name or a file), print its result and write its run folder."""
     from scenarios.experiment import open_experiment
@@ -75,7 +82,11 @@ def run(
 
     if plant is not None:
         changes = (*changes, f'plant.name="{plant}"')
+    if safety is not None:
+        changes = (*changes, f'safety.filter="{safety}"')
     experiment = open_experiment(scenario, changes, duration)
+    if safety is not None and safety != experiment.safety:
+        raise InputError(f"--safety {safety}: the plant {experiment.plant} has no robots to keep apart, expected none")
     if not run_to_folder(experiment, seed, out, _console()):
         raise SystemExit(MISSED)
 

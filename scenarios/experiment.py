@@ -20,6 +20,8 @@ from formation import (
 )
 from robots import GTERNAL, Arena, Chassis, DifferentialDrive, NearIdentityDiffeomorphism, RobotModel
 from robots import RelativePositionSensor as Sensor
+from robots.obstacles import Obstacle
+from robots.safety import FilterSettings
 from scenarios.errors import InputError, located
 from scenarios.load import ScenarioFile, load
 from scenarios.schema import Scenario
@@ -59,6 +61,7 @@ class Experiment:
     nid: NearIdentityDiffeomorphism
     robot: RobotModel
     arena: Arena
+    filter_settings: FilterSettings
 
     @property
     def scenario(self) -> Scenario:
@@ -67,6 +70,14 @@ class Experiment:
     @property
     def plant(self) -> str:
         return self.scenario.plant.name
+
+    @property
+    def safety(self) -> str:
+        """The safety filter, a name of :data:`robots.safety.FILTERS`.
+
+        The single integrator is the theorem's model: points, which neither have wheels nor collide.
+        """
+        return "none" if self.plant == "single_integrator" else self.scenario.safety.filter
 
     @property
     def graph(self) -> SensingGraph:
@@ -113,8 +124,8 @@ def build(file: ScenarioFile, duration: float | None = None) -> Experiment:
     with located(path, "robot"):
         robot = _robot(scenario)
         nid = NearIdentityDiffeomorphism(scenario.robot.projection_distance_m)
-    with located(path, "arena"):
-        arena = Arena(scenario.arena.x_m, scenario.arena.y_m, scenario.arena.walls)
+    if scenario.sensor.delay_periods and scenario.plant.name == "single_integrator":
+        raise InputError(f"{path}: sensor.delay_periods: the plant single_integrator is continuous, expected 0")
     phases = _phases(path, scenario, target, duration)
     _check_length(path, phases, scenario.plant.control_period_s, "duration_s" if duration is None else "--duration")
     return Experiment(
@@ -129,8 +140,31 @@ def build(file: ScenarioFile, duration: float | None = None) -> Experiment:
         sensor=_sensor(scenario, target.graph),
         nid=nid,
         robot=robot,
-        arena=arena,
+        arena=_arena(path, scenario),
+        filter_settings=_filter_settings(path, scenario),
     )
+
+
+def _arena(path: str, scenario: Scenario) -> Arena:
+    obstacles = []
+    for number, table in enumerate(scenario.obstacles, start=1):
+        with located(path, f"obstacles[{number}]"):
+            obstacles.append(Obstacle(np.array(table.vertices_m), table.radius_m))
+    with located(path, "arena"):
+        return Arena(scenario.arena.x_m, scenario.arena.y_m, scenario.arena.walls, tuple(obstacles))
+
+
+def _filter_settings(path: str, scenario: Scenario) -> FilterSettings:
+    table = scenario.safety
+    with located(path, "safety"):
+        return FilterSettings(
+            safe_distance=table.safe_distance_m,
+            sensing_range=table.sensing_range_m,
+            clearance=table.clearance_m,
+            gain=table.gain_per_s,
+            turn=table.turn_rad,
+            stuck_time=table.stuck_time_s,
+        )
 
 
 def _law(scenario: Scenario, target: TargetFormation) -> AngleLaw | ComparisonLaw:

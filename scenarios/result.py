@@ -12,6 +12,7 @@ from formation import agents
 from robots.testbed import Violation
 from scenarios.experiment import Experiment
 from scenarios.metrics import Metrics
+from scenarios.safety_result import safety_result
 from scenarios.tracking import predicted_late_rates
 from scenarios.trajectory import Trajectory
 
@@ -31,7 +32,7 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
         "scenario_sha256": experiment.file.sha256,
         "seed": seed,
         "plant": experiment.plant,
-        "safety": "none",
+        "safety": experiment.safety,
         "versions": versions(),
         "duration_s": float(trajectory.t[-1]),
         "planned_duration_s": float(sum(phase.duration for phase in experiment.phases)),
@@ -82,6 +83,7 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
             }
             for end in metrics.phases
         ],
+        **safety_result(experiment, trajectory),
     }
 
 

@@ -130,6 +130,34 @@ class SensorTable(Table):
     """Standard deviation of a rotation of a measurement about its observer, drawn each control period."""
     compass_bias_deg: NotNegative = 0.0
     """Standard deviation of each robot's constant compass error."""
+    delay_periods: Annotated[int, Field(strict=True, ge=0)] = 0
+    """Control periods by which all measurements lag."""
+
+
+class SafetyTable(Table):
+    """What keeps the robots apart; docs/safety.md derives it."""
+
+    filter: Literal["none", "decentralised", "centralised", "robotarium"] = "none"
+    """``robotarium`` has the defaults of the public simulator's certificate and none of the keys below."""
+    safe_distance_m: Positive = 0.155
+    """Ds, between the projected points of two robots."""
+    sensing_range_m: Positive = 0.30
+    clearance_m: Positive = 0.08
+    """Between a projected point and a wall or an obstacle."""
+    gain_per_s: Positive = 5.0
+    """gamma: how fast the remaining distance may shrink."""
+    turn_rad: NotNegative = 0.7
+    """How far a robot turns its law to the left before a robot, wall or obstacle ahead."""
+    stuck_time_s: Positive = 2.0
+    """Time without progress after which a deadlock is declared and broken."""
+
+
+class ObstacleTable(Table):
+    """Everything within a radius of a point, of a segment or of a convex polygon: a disc, a bar, a block."""
+
+    vertices_m: Annotated[tuple[Vector, ...], Field(min_length=1)]
+    """One vertex, two, or those of a convex polygon in order."""
+    radius_m: NotNegative = 0.0
 
 
 class RandomStartTable(Table):
@@ -189,4 +217,6 @@ class Scenario(Table):
     arena: ArenaTable = ArenaTable()
     plant: PlantTable = PlantTable()
     sensor: SensorTable = SensorTable()
+    safety: SafetyTable = SafetyTable()
+    obstacles: tuple[ObstacleTable, ...] = ()
     goal: GoalTable = GoalTable()

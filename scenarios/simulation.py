@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -11,6 +12,7 @@ from formation import Phase, SequentialActivation
 from robots import make_world
 from robots.sensors import disturb
 from scenarios.experiment import Experiment
+from scenarios.guard import SafetyRecord, make_guard
 from scenarios.trajectory import Trajectory
 
 Real = NDArray[np.float64]
@@ -25,6 +27,7 @@ class Controller:
 
     Attributes:
         active: (..., n) which agents follow the law; the others hold still but for v_r.
+        guard: the safety filter; None without one.
     """
 
     def __init__(self, experiment: Experiment, generators: Sequence[np.random.Generator], batch: tuple[int, ...]):
@@ -37,7 +40,10 @@ class Controller:
         self._commanded = np.zeros(2)
         self._velocity: Real | None = None
         self._delta: Real | None = None
+        self.guard = make_guard(experiment, batch)
         scenario = experiment.scenario
+        self._delay = scenario.sensor.delay_periods
+        self._history: deque[tuple[Real, Real]] = deque(maxlen=self._delay + 1)
         self._compass_error = self._draw_compass(np.radians(scenario.sensor.compass_bias_deg), experiment.n)
         self._activation = None
         self.active = np.ones((*batch, experiment.n), dtype=bool)
@@ -56,23 +62,33 @@ class Controller:
 
     def begin_period(self, points: Real, headings: Real, period: float) -> None:
         """Do what happens once per control period: draw noise, exchange estimates of v_r, activate followers."""
+        self._history.append((points, headings))
+        points, headings = self._sensed(points, headings)
         noise = [self._sensor.noise(rng) for rng in self._generators]
         if noise[0] is not None:
             turn, offset = (np.stack(part).reshape(*self._batch, -1, 2) for part in zip(*noise, strict=True))
             self._noise = turn, offset
+        if self.guard is not None:
+            self.guard.begin_period(self._generators, self._batch, self._noise, period)
         if self._estimator is not None and self._velocity is not None:
             self._velocity = self._estimator.step(self._velocity, self._commanded, period)
         if self._activation is not None:
             self._activation.update(self._feedback(points, headings))
 
     def __call__(self, points: Real, headings: Real) -> Real:
-        velocity = self._feedback(points, headings)
+        points, headings = self._sensed(points, headings)
+        feedback = self._feedback(points, headings)
         if self._activation is not None:
-            velocity *= self.active[..., None]
-        if self._velocity is not None:
-            common = np.ascontiguousarray(self._velocity).view(np.complex128)
-            velocity += (common * self._compass(headings)).view(np.float64)
-        return velocity
+            feedback *= self.active[..., None]
+        if self._velocity is None:
+            return feedback if self.guard is None else self.guard(points, headings, feedback, np.zeros_like(feedback))
+        common = np.ascontiguousarray(self._velocity).view(np.complex128)
+        common = (common * self._compass(headings)).view(np.float64)
+        return feedback + common if self.guard is None else self.guard(points, headings, feedback, common)
+
+    def _sensed(self, points: Real, headings: Real) -> tuple[Real, Real]:
+        """The state that the measurements are of: that of ``delay_periods`` ago, the first one until then."""
+        return self._history[0] if self._delay else (points, headings)
 
     def _feedback(self, points: Real, headings: Real) -> Real:
         """The law's own velocities, without v_r."""
@@ -133,6 +149,7 @@ def simulate(
     wheel_speeds = np.zeros_like(points) * world.wheel_speeds
     phase_index = np.zeros(total + 1, dtype=np.intp)
     active = np.empty((total + 1, *controller.active.shape), dtype=bool)
+    safety = SafetyRecord(total + 1, (*batch, experiment.n), controller.guard)
     t[0], poses[0], points[0], active[0] = 0.0, world.poses, world.points, controller.active
     done, start = 0, 0.0
     for index, (phase, count, period) in enumerate(schedule):
@@ -144,12 +161,27 @@ def simulate(
             t[done] = start + phase.duration * (step / count)
             poses[done], points[done], wheel_speeds[done] = world.poses, world.points, world.wheel_speeds
             phase_index[done], active[done] = index, controller.active
+            safety.take(done)
             if on_period is not None:
                 on_period(done, total)
             if not np.isfinite(world.poses.sum()):
-                return Trajectory(t, poses, points, wheel_speeds, phase_index, active).until(done + 1)
+                total = done
+                break
+        if total == done:
+            break
         start += phase.duration
-    return Trajectory(t, poses, points, wheel_speeds, phase_index, active)
+    return Trajectory(
+        t,
+        poses,
+        points,
+        wheel_speeds,
+        phase_index,
+        active,
+        safety.intervention,
+        safety.relaxation,
+        safety.blockers,
+        safety.stuck,
+    ).until(total + 1)
 
 
 def periods(phase: Phase, control_period: float) -> tuple[int, float]:

@@ -27,6 +27,10 @@ class Trajectory:
             plant without wheels.
         phase: (T,) index of the phase that the period belongs to.
         active: (T, ..., n) which agents follow the law; all but those that wait in sequential activation.
+        intervention: (T, ..., n) how far the safety filter moved the law's velocity during the period, m/s.
+        relaxation: (T, ..., n) by how much the rows of an infeasible problem were lowered, m/s.
+        blockers: (T, ..., n, 3) whose rows those were; see :class:`robots.safety.SafetyFilter`.
+        stuck: (T, ..., n) for how long an agent has made no progress, seconds.
     """
 
     t: Real
@@ -35,17 +39,16 @@ class Trajectory:
     wheel_speeds: Real
     phase: NDArray[np.intp]
     active: NDArray[np.bool_]
+    intervention: Real
+    relaxation: Real
+    blockers: NDArray[np.int32]
+    stuck: Real
 
     def run(self, index: int) -> Trajectory:
         """One run of a batch with one batch dimension."""
-        return Trajectory(
-            self.t,
-            self.poses[:, index],
-            self.points[:, index],
-            self.wheel_speeds[:, index],
-            self.phase,
-            self.active[:, index],
-        )
+        whole = ("t", "phase")
+        states = {field.name: getattr(self, field.name) for field in fields(self)}
+        return Trajectory(*(a if name in whole else a[:, index] for name, a in states.items()))
 
     def until(self, rows: int) -> Trajectory:
         """The first ``rows`` rows."""

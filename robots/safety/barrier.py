@@ -117,7 +117,7 @@ def sampling_loss(
 
     The largest |u| |omega| over the wheels' diamond, twice for two robots, over gamma T.
     """
-    limit, l = drive.speed_limit, nid.projection_distance
+    limit, ahead = drive.speed_limit, nid.projection_distance
     omega = np.linspace(0.0, drive.turn_limit, 1001)
-    speed = np.hypot(limit - omega * drive.base_length / 2.0, l * omega)
+    speed = np.hypot(limit - omega * drive.base_length / 2.0, ahead * omega)
     return float(2.0 * (speed * omega).max() * period**2 / 2.0 / (settings.gain * period))

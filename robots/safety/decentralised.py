@@ -18,7 +18,7 @@ from robots.safety.barrier import (
     FilterSettings,
     turn_weight,
 )
-from robots.safety.protocol import Noise, Real
+from robots.safety.protocol import BLOCKERS, Noise, Real
 
 
 class DecentralisedFilter:
@@ -65,7 +65,7 @@ class DecentralisedFilter:
         self._silence = np.empty((*batch, 0, 2))
         self.intervention = np.zeros(shape)
         self.relaxation = np.zeros(shape)
-        self.blockers: NDArray[np.int64] = np.full((*shape, kernel.BLOCKERS), -1, dtype=np.int64)
+        self.blockers: NDArray[np.int64] = np.full((*shape, BLOCKERS), -1, dtype=np.int64)
         self.stuck = np.zeros(shape)
         self._flat = tuple(a.reshape(*batch, *a.shape[len(shape) :]) for a in self._outputs())
 

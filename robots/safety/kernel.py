@@ -17,17 +17,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from robots.safety.protocol import BLOCKERS, WALLS
+
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 WHEEL_ROWS = 4
 """The diamond |u_x| + r |u_y| <= L has four sides."""
-
-WALLS = 4
-"""Sides of the arena; they are numbered after the robots, obstacles after them."""
-
-BLOCKERS = 3
-"""At a vertex of the least relaxation at most three rows meet."""
 
 _PARALLEL = 1e-12  # sine of the angle between two rows that are taken as parallel
 _TIGHT = 1e-12  # m/s by which rounding may break a row

@@ -10,6 +10,12 @@ from numpy.typing import NDArray
 
 Real = NDArray[np.float64]
 
+WALLS = 4
+"""Sides of the arena; rows of a filter's problem number them after the robots, and obstacles after them."""
+
+BLOCKERS = 3
+"""At a vertex of the least relaxation at most three rows meet."""
+
 
 @dataclass(frozen=True, eq=False)
 class Noise:
