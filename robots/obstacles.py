@@ -50,18 +50,31 @@ class Obstacle:
 
     def distance(self, points: ArrayLike) -> Real:
         """Signed distance (...), metres, from the obstacle to points (..., 2); negative inside."""
+        return self.nearest(points)[0]
+
+    def nearest(self, points: ArrayLike) -> tuple[Real, Real]:
+        """Signed distance (...), metres, and the unit vector (..., 2) from the border's nearest point away from it."""
         p = np.asarray(points, dtype=np.float64)
         a, b = self.vertices, np.roll(self.vertices, -1, axis=0)
         edge, ray = b - a, p[..., None, :] - a
         length2 = (edge**2).sum(axis=-1)
         along = (ray * edge).sum(axis=-1)
         s = np.clip(np.divide(along, length2, out=np.zeros_like(along), where=length2 > 0.0), 0.0, 1.0)
-        distance = np.linalg.norm(ray - s[..., None] * edge, axis=-1).min(axis=-1)
+        gaps = ray - s[..., None] * edge
+        lengths = np.linalg.norm(gaps, axis=-1)
+        best = lengths.argmin(axis=-1)[..., None]
+        distance = np.take_along_axis(lengths, best, axis=-1)[..., 0]
+        away = np.take_along_axis(gaps, best[..., None], axis=-2)[..., 0, :]
+        away = np.divide(away, distance[..., None], out=np.zeros_like(away), where=distance[..., None] > 0.0)
         if len(a) > 2:
-            outward = (edge[:, 1] * ray[..., 0] - edge[:, 0] * ray[..., 1]) / np.sqrt(length2)
+            normal = np.stack([edge[:, 1], -edge[:, 0]], axis=-1) / np.sqrt(length2)[:, None]
+            outward = (ray * normal).sum(axis=-1)
+            side = outward.argmax(axis=-1)
             depth = outward.max(axis=-1)
-            distance = np.where(depth < 0.0, depth, distance)
-        return distance - self.radius
+            inside = depth <= 0.0
+            distance = np.where(inside, depth, distance)
+            away = np.where(inside[..., None], normal[side], away)
+        return distance - self.radius, away
 
     @property
     def outline(self) -> Real:

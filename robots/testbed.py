@@ -1,8 +1,9 @@
 """The testbed's rules: would the Robotarium accept this run?
 
 A run is rejected when a robot's axle centre leaves the floor, or when two collision centres, each 0.025 m ahead of its
-axle centre, come within 0.135 m of each other (``rps`` 2.1). A wheel command beyond the limit is a warning: the testbed
-clips it. Each kind of violation is reported once, with its first occurrence and the number of steps it lasts.
+axle centre, come within 0.135 m of each other (``rps`` 2.1). Ours, by the same measure: when one comes within half of
+that of an obstacle. A wheel command beyond the limit is a warning: the testbed clips it. Each kind of violation is
+reported once, with its first occurrence and the number of steps it lasts.
 """
 
 from __future__ import annotations
@@ -22,6 +23,9 @@ Real = NDArray[np.float64]
 COLLISION_DISTANCE = 0.135
 """Metres between two collision centres, below which the testbed rejects a run (``rps`` 2.1)."""
 
+OBSTACLE_DISTANCE = COLLISION_DISTANCE / 2.0
+"""Metres between a collision centre and an obstacle, below which the verdict rejects a run."""
+
 _CHUNK = 1 << 22  # distances held in memory at once
 
 
@@ -30,15 +34,17 @@ class Violation:
     """One kind of violation.
 
     Attributes:
-        kind: ``floor`` and ``collision`` reject the run, ``actuator`` is a warning.
+        kind: ``floor``, ``collision`` and ``obstacle`` reject the run, ``actuator`` is a warning.
         steps: number of recorded steps at which it holds.
         time: of the first one, seconds.
         robots: rows of the robots involved in the first one.
-        place: (x, y) of the first one, metres: the axle centre, or the middle between the two collision centres.
-        value: what was found: the distance beyond the floor or between the centres (m), or the wheel speed (rad/s).
+        place: (x, y) of the first one, metres: the axle centre, the middle between the two collision centres, or
+            the collision centre at an obstacle.
+        value: what was found: the distance beyond the floor, between the centres or from the obstacle (m), or the wheel
+            speed (rad/s).
     """
 
-    kind: Literal["floor", "collision", "actuator"]
+    kind: Literal["floor", "collision", "obstacle", "actuator"]
     steps: int
     time: float
     robots: tuple[int, ...]
@@ -116,6 +122,13 @@ def judge(
         i, j = near.pairs[k].tolist()
         x, y = centres[k, [i, j]].mean(axis=0).tolist()
         violations.append(Violation("collision", len(at), float(t[k]), (i, j), (x, y), float(near.distance[k])))
+    if floor.obstacles:
+        gaps = np.min([obstacle.distance(centres) for obstacle in floor.obstacles], axis=0)
+        touched = gaps < OBSTACLE_DISTANCE
+        if (at := np.flatnonzero(touched.any(axis=1))).size:
+            k, robot = at[0], int(gaps[at[0]].argmin())
+            x, y = centres[k, robot].tolist()
+            violations.append(Violation("obstacle", len(at), float(t[k]), (robot,), (x, y), float(gaps[k, robot])))
     fast = np.abs(wheel_speeds).max(axis=-1) > drive.wheel_speed_limit * (1.0 + 1e-9)
     if (at := np.flatnonzero(fast.any(axis=1))).size:
         k, robot = at[0], int(fast[at[0]].argmax())

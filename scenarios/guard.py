@@ -56,7 +56,7 @@ class Guard:
 
 
 class SafetyRecord:
-    """What the filter said, period by period: the arrays of the same names of a :class:`scenarios.trajectory.Trajectory`.
+    """What the filter said, period by period: arrays as in :class:`scenarios.trajectory.Trajectory`.
 
     Without a filter nothing was changed, relaxed or stuck.
     """

@@ -181,6 +181,7 @@ def print_result(console: Console, result: dict[str, Any]) -> None:
             f"smallest separation: {near['distance_m']:.3f} m at {near['time_s']:.1f} s, "
             f"agents {near['agents'][0]} and {near['agents'][1]}"
         )
+    _print_safety(console, result)
     testbed = result["testbed"]
     console.print(f"testbed: {'[green]accepted' if testbed['accepted'] else '[red]rejected'}")
     for violation in testbed["violations"]:
@@ -234,6 +235,30 @@ def _print_ends(console: Console, result: dict[str, Any]) -> None:
     console.print()
 
 
+def _print_safety(console: Console, result: dict[str, Any]) -> None:
+    """What the filter did, if there was one."""
+    if result["safety"] == "none":
+        console.print("safety filter: none")
+        return
+    share, relaxed = result["interventions"]["share"], result["relaxed"]
+    console.print(f"safety filter: {result['safety']}, changed {100 * share:.1f} % of the commands")
+    if relaxed["count"]:
+        console.print(
+            f"  {relaxed['count']} of {relaxed['of']} problems infeasible, relaxed by at most "
+            f"{relaxed['largest_m_s']:.1e} m/s"
+        )
+        for entry in relaxed["agents"]:
+            first = entry["first"]
+            console.print(
+                f"  agent {entry['agent']}: {entry['count']}, first at {first['time_s']:.2f} s "
+                f"by {', '.join(first['rows'])}"
+            )
+    for deadlock in result["deadlocks"]:
+        until = deadlock["until_s"]
+        end = "never broken" if until is None else f"broken at {until:.1f} s"
+        console.print(f"  deadlock of agent {deadlock['agent']} declared at {deadlock['from_s']:.1f} s, {end}")
+
+
 def _describe(violation: dict[str, Any]) -> str:
     first = violation["first"]
     who = " and ".join(str(agent) for agent in first["agents"])
@@ -241,6 +266,8 @@ def _describe(violation: dict[str, Any]) -> str:
     match violation["kind"]:
         case "floor":
             return f"agent {who} leaves the floor; {where}"
+        case "obstacle":
+            return f"agent {who} comes within {first['value']:.3f} m of an obstacle; {where}"
         case "collision":
             return f"agents {who} come within {first['value']:.3f} m; {where}"
         case _:

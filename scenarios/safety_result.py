@@ -29,9 +29,9 @@ def safety_result(experiment: Experiment, trajectory: Trajectory) -> dict[str, A
 def deadlocks(trajectory: Trajectory, stuck_time: float) -> list[dict[str, Any]]:
     """Every declared deadlock: the agent, from when it was stuck, and when it had moved on, null if never."""
     found = []
-    stuck = trajectory.stuck > stuck_time
+    stuck = trajectory.stuck >= stuck_time
     edges = np.diff(stuck.astype(np.int8), axis=0, prepend=0)
-    for row in np.flatnonzero(stuck.any(axis=0)):
+    for row in np.flatnonzero(stuck.any(axis=0)).tolist():
         starts, ends = (np.flatnonzero(edges[:, row] == sign) for sign in (1, -1))
         for number, start in enumerate(starts):
             until = float(trajectory.t[ends[number]]) if number < len(ends) else None
@@ -55,7 +55,7 @@ def _relaxed(trajectory: Trajectory) -> dict[str, Any]:
     n = amount.shape[1]
     problems = amount > 0.0
     involved = []
-    for row in np.flatnonzero(problems.any(axis=0)):
+    for row in np.flatnonzero(problems.any(axis=0)).tolist():
         first = int(problems[:, row].argmax())
         involved.append(
             {

@@ -82,8 +82,8 @@ class Controller:
             feedback *= self.active[..., None]
         if self._velocity is None:
             return feedback if self.guard is None else self.guard(points, headings, feedback, np.zeros_like(feedback))
-        common = np.ascontiguousarray(self._velocity).view(np.complex128)
-        common = (common * self._compass(headings)).view(np.float64)
+        velocity = np.ascontiguousarray(self._velocity).view(np.complex128)
+        common = (velocity * self._compass(headings)).view(np.float64)
         return feedback + common if self.guard is None else self.guard(points, headings, feedback, common)
 
     def _sensed(self, points: Real, headings: Real) -> tuple[Real, Real]:

@@ -25,7 +25,7 @@ def make_filter(
     """The filter ``name`` for robots (..., n), ``None`` for ``"none"``.
 
     Raises:
-        ValueError: ``name`` is not one of :data:`FILTERS`, or the filter cannot hold a batch of runs.
+        ValueError: ``name`` is not one of :data:`FILTERS`.
     """
     if name == "none":
         return None
@@ -40,5 +40,5 @@ def make_filter(
     if name == "robotarium":
         from robots.safety.certificate import RobotariumCertificate
 
-        return RobotariumCertificate(shape, drive, nid, arena)
+        return RobotariumCertificate(shape, arena)
     raise ValueError(f"safety must be one of {', '.join(FILTERS)}, got {name!r}")

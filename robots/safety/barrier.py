@@ -7,9 +7,9 @@ that point any velocity, it is the centre of the chassis, and it is the point th
 
     h = D^2 - Ds^2,      dh/dt = 2 D n.(v_i - v_j).
 
-A linear class-K function asks for dh/dt >= -gamma h, hence h(t) >= h(0) e^{-gamma t}: what starts safe stays safe (Ames et
-al. 2019, "Control barrier functions"). Each robot answers for half of it. With the common velocity v_r of a maneuver,
-which cancels between two robots that both have it,
+A linear class-K function asks for dh/dt >= -gamma h, hence h(t) >= h(0) e^{-gamma t}: what starts safe stays safe (Ames
+et al. 2019, "Control barrier functions"). Each robot answers for half of it. With the common velocity v_r of a
+maneuver, which cancels between two robots that both have it,
 
     n.(u_i - v_r) >= -gamma h / (4 D)                                                                           (pair)
 
@@ -29,13 +29,13 @@ fixed directions give
     D(t + T) - Ds >= (D - Ds) (1 - gamma T (D + Ds) / (2 D)) >= (D - Ds) (1 - gamma T),
 
 so gamma T <= 1 keeps D >= Ds without any margin (here 0.165). The same holds for (thing): a convex thing is behind the
-line through its nearest point. But the robot holds its *twist*, so its point turns away from u by up to omega T during the
-period and lands up to e = |u| |omega| T^2 / 2 off. Two robots lose at most 2 e a period and regain the share gamma T of
-what they lack: D >= Ds - 2 e / (gamma T), see :func:`sampling_loss`.
+line through its nearest point. But the robot holds its *twist*, so its point turns away from u by up to omega T during
+the period and lands up to e = |u| |omega| T^2 / 2 off. Two robots lose at most 2 e a period and regain the share
+gamma T of what they lack: D >= Ds - 2 e / (gamma T), see :func:`sampling_loss`.
 
-**Bodies.** The chassis, 0.10 m x 0.11 m about c, lies within the radius :attr:`robots.model.Chassis.radius` of 0.0743 m,
-so D >= 0.1487 m excludes contact of corners in any orientation. Ds = 0.155 m leaves 6.3 mm for the 2.0 mm of sampling at
-each period's end, for the traction's start-up lag, and for noise; the testbed's 0.135 m lies 20 mm below.
+**Bodies.** The chassis, 0.10 m x 0.11 m about c, lies within the radius :attr:`robots.model.Chassis.radius` of
+0.0743 m, so D >= 0.1487 m excludes contact of corners in any orientation. Ds = 0.155 m leaves 6.3 mm for the sampling
+loss, for the traction's start-up lag, and for noise; the testbed's 0.135 m lies 20 mm below.
 
 **Not promised.** Robots pushed beyond their traction; robots that start with h < 0 (they separate, if the wheels can);
 neighbours beyond the sensing range (closing from there at full speed takes longer than a period); robots with different
@@ -94,15 +94,19 @@ class FilterSettings:
             )
 
 
-STUCK_LIMIT = 5.0
-"""Seconds: largest value of the stuck time tau. It grows while |u - v_r| < 0.3 |s g| and |s g| > 0.01 m/s, and shrinks at
-0.4 of that rate otherwise."""
+STUCK_PROGRESS, STUCK_WISH, STUCK_RECOVERY = 0.3, 0.01, 0.4
+"""The stuck time tau grows while |u - v_r| < 0.3 |s g| and |s g| > 0.01 m/s, else it shrinks at 0.4 of that rate."""
 
 STUCK_TURN_RATE, STUCK_TURN_LIMIT = 0.5, 1.5
 """rad/s and rad: how fast and how far the law of a stuck robot turns further."""
 
 WHEEL_MARGIN = 1e-6
 """Share of the wheels' limit left free, so that rounding never shows as a command beyond it."""
+
+
+def stuck_limit(settings: FilterSettings) -> float:
+    """Seconds: the stuck time at which a robot has turned all the way, and tries the other side."""
+    return settings.stuck_time + STUCK_TURN_LIMIT / STUCK_TURN_RATE
 
 
 def turn_weight(drive: DifferentialDrive, nid: NearIdentityDiffeomorphism) -> float:

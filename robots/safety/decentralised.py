@@ -11,11 +11,14 @@ from robots.nid import NearIdentityDiffeomorphism
 from robots.obstacles import pack
 from robots.safety import kernel
 from robots.safety.barrier import (
-    STUCK_LIMIT,
+    STUCK_PROGRESS,
+    STUCK_RECOVERY,
     STUCK_TURN_LIMIT,
     STUCK_TURN_RATE,
+    STUCK_WISH,
     WHEEL_MARGIN,
     FilterSettings,
+    stuck_limit,
     turn_weight,
 )
 from robots.safety.protocol import BLOCKERS, Noise, Real
@@ -24,7 +27,8 @@ from robots.safety.protocol import BLOCKERS, Noise, Real
 class DecentralisedFilter:
     """One period of robot i, with g the law without v_r, all in its body frame:
 
-    1. turn g left by ``turn`` x max_j (how near j is) (how much g drives at j) + (what a stuck robot adds);
+    1. turn g left by ``turn`` max_j (how near j is) (how much g drives at j) + (what a stuck robot adds), to the right
+       once the left has led nowhere;
     2. scale g by the largest s <= 1 that keeps v_r + s g within the wheels' limits;
     3. minimise |u - (v_r + s g)|^2 subject to the rows of :mod:`robots.safety.barrier`; if no u satisfies them, lower
        all but the wheels' by the least amount that helps;
@@ -53,7 +57,10 @@ class DecentralisedFilter:
             gain=float(settings.gain),
             turn=float(settings.turn),
             stuck_time=float(settings.stuck_time),
-            stuck_limit=max(STUCK_LIMIT, settings.stuck_time + STUCK_TURN_LIMIT / STUCK_TURN_RATE),
+            stuck_limit=stuck_limit(settings),
+            stuck_progress=STUCK_PROGRESS,
+            stuck_wish=STUCK_WISH,
+            stuck_recovery=STUCK_RECOVERY,
             stuck_turn_rate=STUCK_TURN_RATE,
             stuck_turn_limit=STUCK_TURN_LIMIT,
             speed_limit=drive.speed_limit * (1.0 - WHEEL_MARGIN),
@@ -67,28 +74,26 @@ class DecentralisedFilter:
         self.relaxation = np.zeros(shape)
         self.blockers: NDArray[np.int64] = np.full((*shape, BLOCKERS), -1, dtype=np.int64)
         self.stuck = np.zeros(shape)
-        self._flat = tuple(a.reshape(*batch, *a.shape[len(shape) :]) for a in self._outputs())
-
-    def _outputs(self) -> tuple[NDArray[np.generic], ...]:
-        return self.intervention, self.relaxation, self.blockers, self.stuck
+        self._side = np.ones(batch)
+        self._batch = batch
 
     def filter(
         self, points: Real, headings: Real, feedback: Real, common: Real, period: float, noise: Noise | None = None
     ) -> Real:
         """See :class:`robots.safety.SafetyFilter`."""
         u = np.empty(points.shape)
-        intervention, relaxation, blockers, stuck = self._flat
-        batch = (*intervention.shape, 2)
+        batch = (*self._batch, 2)
         turns, offsets = self._silence, self._silence
         if noise is not None:
-            full = (*intervention.shape, -1, 2)
+            full = (*self._batch, -1, 2)
             turns, offsets = noise.turns.reshape(full), noise.offsets.reshape(full)
         kernel.step(
             points.reshape(batch),
             headings.reshape(batch),
             feedback.reshape(batch),
             common.reshape(batch),
-            stuck,
+            self.stuck.reshape(self._batch),
+            self._side,
             float(period),
             self._constants,
             self._walls,
@@ -96,8 +101,8 @@ class DecentralisedFilter:
             turns,
             offsets,
             u.reshape(batch),
-            intervention,
-            relaxation,
-            blockers,
+            self.intervention.reshape(self._batch),
+            self.relaxation.reshape(self._batch),
+            self.blockers.reshape(*self._batch, BLOCKERS),
         )
         return u

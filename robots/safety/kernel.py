@@ -1,9 +1,9 @@
 """One step of the decentralised filter for all robots of all runs, compiled.
 
-Everything that numba compiles is in this one file: its cache looks at the time stamp of the file that holds the function
-that is called, so a callee elsewhere could leave stale machine code behind. Three ideas, from the inside out: the exact
-two-variable solver, the neighbour search on a grid of cells, and the step itself. :mod:`robots.safety.barrier` derives
-the rows.
+Everything that numba compiles is in this one file: its cache looks at the time stamp of the file that holds the
+function that is called, so a callee elsewhere could leave stale machine code behind. Three ideas, from the inside out:
+the exact two-variable solver, the neighbour search on a grid of cells, and the step itself.
+:mod:`robots.safety.barrier` derives the rows.
 
 A row (a_x, a_y, b) of the arrays below is the half-plane a.u >= b with |a| = 1. The first :data:`WHEEL_ROWS` rows are
 hard: the sides of the wheels' diamond.
@@ -40,6 +40,9 @@ class Constants(NamedTuple):
     turn: float
     stuck_time: float
     stuck_limit: float
+    stuck_progress: float
+    stuck_wish: float
+    stuck_recovery: float
     stuck_turn_rate: float
     stuck_turn_limit: float
     speed_limit: float
@@ -274,6 +277,7 @@ def step(
     feedback: Real,
     common: Real,
     stuck: Real,
+    side: Real,
     period: float,
     constants: Constants,
     walls: Real,
@@ -293,6 +297,7 @@ def step(
         points, headings: (B, n, 2) projected points, metres, and unit heading vectors.
         feedback, common: (B, n, 2) the law without v_r, and v_r, m/s, in body frames.
         stuck: (B, n) the state tau, seconds; advanced in place.
+        side: (B, n) the side to which a robot turns, 1 left or -1 right; advanced in place.
         period: seconds.
         constants: of the filter and of the drive.
         walls: (4, 3) or (0, 3) rows (n_x, n_y, c): inside is n.p >= c.
@@ -370,10 +375,10 @@ def step(
                 if distance - constants.clearance >= window:
                     continue
                 ex, ey = distance * (hx * ox + hy * oy), distance * (hx * oy - hy * ox)
-                side = 1.0 if distance >= 0.0 else -1.0
+                sign = 1.0 if distance >= 0.0 else -1.0
                 if noisy:
                     ex, ey = _measured(ex, ey, turns[run, i, code], offsets[run, i, code])
-                distance = side * np.hypot(ex, ey)
+                distance = sign * np.hypot(ex, ey)
                 if distance == 0.0:
                     nx, ny = hx * ox + hy * oy, hx * oy - hy * ox
                 else:
@@ -385,7 +390,7 @@ def step(
                 crowding = max(crowding, _crowding((distance - constants.clearance) / window, nx, ny, gx, gy, law))
             wait = max(0.0, stuck[run, i] - constants.stuck_time)
             phi = constants.turn * crowding + min(constants.stuck_turn_limit, constants.stuck_turn_rate * wait)
-            c, s = np.cos(phi), np.sin(phi)
+            c, s = np.cos(phi), side[run, i] * np.sin(phi)
             tx, ty = c * gx - s * gy, s * gx + c * gy
             s = _within_wheels(vx, vy, tx, ty, speed, weight)
             tx, ty = s * tx, s * ty
@@ -402,10 +407,15 @@ def step(
             s = _within_wheels(vx, vy, gx, gy, speed, weight)
             intervention[run, i] = np.hypot(ux - vx - s * gx, uy - vy - s * gy)
             wish, progress = np.hypot(tx, ty), np.hypot(ux - vx, uy - vy)
-            if progress < 0.3 * wish and wish > 0.01:
-                stuck[run, i] = min(constants.stuck_limit, stuck[run, i] + period)
+            if progress < constants.stuck_progress * wish and wish > constants.stuck_wish:
+                stuck[run, i] += period
+                if stuck[run, i] >= constants.stuck_limit:  # this side leads nowhere
+                    stuck[run, i] = constants.stuck_time
+                    side[run, i] = -side[run, i]
             else:
-                stuck[run, i] = max(0.0, stuck[run, i] - 0.4 * period)
+                stuck[run, i] = max(0.0, stuck[run, i] - constants.stuck_recovery * period)
+                if stuck[run, i] == 0.0:
+                    side[run, i] = 1.0
 
 
 @njit(cache=True)

@@ -1,4 +1,4 @@
-"""The world with mass, traction, contact and walls, on pymunk (Chipmunk 2-D).
+"""The world with mass, traction, contact, walls and obstacles, on pymunk (Chipmunk 2-D).
 
 Each chassis is a dynamic box, its centre of mass ahead of the axle. It hangs on a massless kinematic body that moves as
 the wheels command, by two joints without position correction:
@@ -128,6 +128,8 @@ def _space(poses: Real, robot: RobotModel, arena: Arena | None) -> pymunk.Space:
         space.add(partner, pivot, gear)
     if arena is not None and arena.walls:
         space.add(*_walls(space, arena, chassis.body_friction))
+    if arena is not None and arena.obstacles:
+        space.add(*_obstacles(space, arena, chassis.body_friction))
     return space
 
 
@@ -140,3 +142,19 @@ def _walls(space: pymunk.Space, arena: Arena, friction: float) -> Sequence[pymun
         wall.friction = friction
         walls.append(wall)
     return walls
+
+
+def _obstacles(space: pymunk.Space, arena: Arena, friction: float) -> Sequence[pymunk.Shape]:
+    shapes: list[pymunk.Shape] = []
+    for obstacle in arena.obstacles:
+        vertices = [tuple(vertex) for vertex in obstacle.vertices.tolist()]
+        match len(vertices):
+            case 1:
+                shape: pymunk.Shape = pymunk.Circle(space.static_body, obstacle.radius, vertices[0])
+            case 2:
+                shape = pymunk.Segment(space.static_body, vertices[0], vertices[1], obstacle.radius)
+            case _:
+                shape = pymunk.Poly(space.static_body, vertices, radius=obstacle.radius)
+        shape.friction = friction
+        shapes.append(shape)
+    return shapes
