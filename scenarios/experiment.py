@@ -126,6 +126,7 @@ def build(file: ScenarioFile, duration: float | None = None) -> Experiment:
         nid = NearIdentityDiffeomorphism(scenario.robot.projection_distance_m)
     if scenario.sensor.delay_periods and scenario.plant.name == "single_integrator":
         raise InputError(f"{path}: sensor.delay_periods: the plant single_integrator is continuous, expected 0")
+    arena = _arena(path, scenario)
     phases = _phases(path, scenario, target, duration)
     _check_length(path, phases, scenario.plant.control_period_s, "duration_s" if duration is None else "--duration")
     return Experiment(
@@ -133,14 +134,14 @@ def build(file: ScenarioFile, duration: float | None = None) -> Experiment:
         target=target,
         angles=angles,
         target_angles=target_angles,
-        starts=build_starts(path, scenario, target),
+        starts=build_starts(path, scenario, target, arena),
         phases=phases,
         law=_law(scenario, target),
         estimator=_estimator(path, scenario, target.graph),
         sensor=_sensor(scenario, target.graph),
         nid=nid,
         robot=robot,
-        arena=_arena(path, scenario),
+        arena=arena,
         filter_settings=_filter_settings(path, scenario),
     )
 

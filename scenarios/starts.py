@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from formation import TargetFormation, agents, end_similarity
+from robots import GTERNAL, Arena
+from robots.obstacles import Obstacle
 from scenarios.errors import InputError, located
 from scenarios.schema import RandomStartTable, Scenario
 from scenarios.targets import in_order
@@ -27,12 +29,15 @@ class Starts:
         points: (n, 2) initial projected points, metres; None where the seed decides.
         headings: (n,) initial headings, radians; NaN where the seed decides.
         random: how points are drawn.
+        obstacles: no robot is drawn closer to one than ``clearance``, metres.
     """
 
     path: str
     points: Real | None
     headings: Real
     random: RandomStartTable | None
+    obstacles: tuple[Obstacle, ...] = ()
+    clearance: float = 0.0
 
     def draw(self, rng: np.random.Generator) -> tuple[Real, Real]:
         """Projected points (n, 2), metres, and headings (n,), radians, of one run.
@@ -53,6 +58,8 @@ class Starts:
         for row in range(len(points)):
             for _ in range(MAX_DRAWS):
                 points[row] = rng.uniform(low, high)
+                if any(obstacle.distance(points[row]) < self.clearance for obstacle in self.obstacles):
+                    continue
                 if (np.linalg.norm(points[:row] - points[row], axis=1) >= table.min_separation_m).all():
                     break
             else:
@@ -63,11 +70,11 @@ class Starts:
         return points
 
 
-def build_starts(path: str, scenario: Scenario, target: TargetFormation) -> Starts:
+def build_starts(path: str, scenario: Scenario, target: TargetFormation, arena: Arena) -> Starts:
     """The starts of a scenario.
 
     Raises:
-        InputError: a start is missing, or agents 1 and 2 coincide.
+        InputError: a start is missing, lies in an obstacle, or agents 1 and 2 coincide.
     """
     ordered = in_order(scenario.agents)
     degrees = [np.nan if agent.heading_deg is None else agent.heading_deg for agent in ordered]
@@ -79,12 +86,18 @@ def build_starts(path: str, scenario: Scenario, target: TargetFormation) -> Star
                 raise InputError(
                     f"{path}: random_start.{axis}: expected [low, high] with low < high, got [{low}, {high}]"
                 )
-        return Starts(path, None, headings, random)
+        return Starts(path, None, headings, random, arena.obstacles, scenario.safety.clearance_m)
     if not ordered:
         raise InputError(f"{path}: random_start: missing, random_formation has no starts of its own")
     for agent in ordered:
         if agent.start is None:
             raise InputError(f"{path}: agents[id {agent.id}].start: missing")
+        for number, obstacle in enumerate(arena.obstacles, start=1):
+            if (distance := float(obstacle.distance(agent.start))) < GTERNAL.chassis.radius:
+                raise InputError(
+                    f"{path}: agents[id {agent.id}].start: expected at least {GTERNAL.chassis.radius:.3f} m from "
+                    f"obstacle {number}, got {distance:.3f} m"
+                )
     points = np.array([agent.start for agent in ordered])
     with located(path, "agents[id 2].start"):
         end_similarity(target, points[agents.LEADER], points[agents.FIRST_FOLLOWER])
