@@ -10,7 +10,7 @@ export RERUN_ANALYTICS_ENABLED := false
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: figures help install run test quick lint bench clean
+.PHONY: help install run test quick lint bench figures evidence clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -48,6 +48,9 @@ figures: $(STAMP) ## draw the figures of the documents
 	cp runs/figures/maneuver/figure-motion.png docs/images/figure-maneuver.png
 	cp runs/figures/maneuver/figure-graph.png runs/figures/maneuver/figure-decay.png \
 		runs/figures/maneuver/figure-separation.png docs/images
+
+evidence: $(STAMP) ## the Monte Carlo evidence over all seeds, printed (about 15 minutes)
+	EVIDENCE_SEEDS=500 $(BIN)/pytest tests/evidence -q -n auto --dist load -rP
 
 clean: ## remove the environment, caches and runs
 	rm -rf $(VENV) runs build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache .benchmarks
