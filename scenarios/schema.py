@@ -138,10 +138,11 @@ class SafetyTable(Table):
     """What keeps the robots apart; docs/safety.md derives it."""
 
     filter: Literal["none", "decentralised", "centralised", "robotarium"] = "none"
-    """``robotarium`` has the defaults of the public simulator's certificate and none of the keys below."""
+    """`robotarium` has the defaults of the public simulator's certificate and none of the keys below."""
     safe_distance_m: Positive = 0.155
     """Ds, between the projected points of two robots."""
     sensing_range_m: Positive = 0.30
+    """How far a robot sees others; rows are written for what is nearer."""
     clearance_m: Positive = 0.08
     """Between a projected point and a wall or an obstacle."""
     gain_per_s: Positive = 5.0
@@ -158,6 +159,7 @@ class ObstacleTable(Table):
     vertices_m: Annotated[tuple[Vector, ...], Field(min_length=1)]
     """One vertex, two, or those of a convex polygon in order."""
     radius_m: NotNegative = 0.0
+    """How far the obstacle reaches beyond its vertices, edges or faces."""
 
 
 class RandomStartTable(Table):

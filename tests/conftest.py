@@ -10,6 +10,7 @@ import pytest
 
 from scenarios.experiment import Experiment, build, open_experiment
 from scenarios.load import LIBRARY, ScenarioFile, validate
+from scenarios.trajectory import Trajectory
 
 hypothesis.settings.register_profile("project", deadline=None, derandomize=True, max_examples=60)
 hypothesis.settings.load_profile("project")
@@ -50,6 +51,26 @@ def moving(varied: Callable[..., Experiment]) -> Callable[[str], Experiment]:
         return varied(
             without="duration_s", phases=phases, law={"first_follower": first_follower}, plant={"name": plant}
         )
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def recorded() -> Callable[..., Trajectory]:
+    """Makes a trajectory from times (T,), poses (T, n, 3) and points (T, n, 2); all else as if nothing happened."""
+
+    def make(t: np.ndarray, poses: np.ndarray, points: np.ndarray, **states: np.ndarray) -> Trajectory:
+        robots = points.shape[:2]
+        nothing = {
+            "wheel_speeds": np.zeros((*robots, 2)),
+            "phase": np.zeros(len(t), dtype=np.intp),
+            "active": np.ones(robots, dtype=bool),
+            "intervention": np.zeros(robots),
+            "relaxation": np.zeros(robots),
+            "blockers": np.full((*robots, 3), -1, dtype=np.int32),
+            "stuck": np.zeros(robots),
+        }
+        return Trajectory(t=t, poses=poses, points=points, **(nothing | states))
 
     return make
 

@@ -233,7 +233,8 @@ def test_wrong_files(cli: Cli, tmp_path: Path, content: bytes) -> None:
 def test_every_key_of_a_scenario_misspelt_by_one_letter_is_offered_back(cli: Cli, tmp_path: Path) -> None:
     text = (LIBRARY / "shape.toml").read_text(encoding="utf-8")
     for key in (k for k in tomllib.loads(text) if k not in ("target",)):
-        (tmp_path / "mine.toml").write_text(text.replace(f"{key} =", f"{key}x =", 1), encoding="utf-8")
+        misspelt = text.replace(f"{key} =", f"{key}x =", 1).replace(f"[{key}]", f"[{key}x]", 1)
+        (tmp_path / "mine.toml").write_text(misspelt, encoding="utf-8")
         refused(cli("show", "mine.toml"))
         refused(cli("show", "shape", *sets(f"{key}x=1")), f"unknown key, did you mean '{key}'?")
 

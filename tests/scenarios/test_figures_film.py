@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -36,16 +37,12 @@ def silent(done: int, total: int) -> None:
     """No progress is shown."""
 
 
-def still(t: np.ndarray) -> Trajectory:
-    n = len(t)
-    zeros = np.zeros((n, 3, 2))
-    return Trajectory(t, np.zeros((n, 3, 3)), zeros, zeros, np.zeros(n, dtype=np.intp), np.ones((n, 3), dtype=bool))
-
-
-@given(st.floats(0.1, 50.0), st.floats(1.0, 60.0), st.integers(2, 400))
-def test_each_frame_shows_the_state_nearest_to_its_time(speed: float, fps: float, steps: int) -> None:
+@given(speed=st.floats(0.1, 50.0), fps=st.floats(1.0, 60.0), steps=st.integers(2, 400))
+def test_each_frame_shows_the_state_nearest_to_its_time(
+    recorded: Callable[..., Trajectory], speed: float, fps: float, steps: int
+) -> None:
     t = 0.033 * np.arange(steps)
-    rows = frame_rows(still(t), speed, fps)
+    rows = frame_rows(recorded(t, np.zeros((steps, 3, 3)), np.zeros((steps, 3, 2))), speed, fps)
     assert rows[0] == 0
     assert rows[-1] == steps - 1
     assert (np.diff(rows) >= 0).all()
@@ -53,9 +50,10 @@ def test_each_frame_shows_the_state_nearest_to_its_time(speed: float, fps: float
     assert np.abs(t[rows[:-1]] - wanted).max() <= 0.033 / 2.0 + 1e-9
 
 
-def test_a_film_ends_with_the_last_finite_state() -> None:
-    trajectory = still(0.1 * np.arange(50))
-    trajectory.poses[40:] = np.nan
+def test_a_film_ends_with_the_last_finite_state(recorded: Callable[..., Trajectory]) -> None:
+    poses = np.zeros((50, 3, 3))
+    poses[40:] = np.nan
+    trajectory = recorded(0.1 * np.arange(50), poses, np.zeros((50, 3, 2)))
     assert frame_rows(trajectory, 1.0, 10.0)[-1] == 39
 
 

@@ -47,45 +47,48 @@ def test_everything_from_the_settling_time_on_is_below_the_bound_and_what_comes_
         assert settled == 0.0 or e[int(settled) - 1] >= 1.0
 
 
-def standing(experiment: Experiment, points: np.ndarray, steps: int = 4) -> Trajectory:
-    """Robots that stand at projected points, all with heading 0."""
-    poses = np.zeros((steps, experiment.n, 3))
-    poses[..., :2] = points - [experiment.nid.projection_distance, 0.0]
-    return Trajectory(
-        t=np.arange(steps) * 0.1,
-        poses=poses,
-        points=np.tile(points, (steps, 1, 1)),
-        wheel_speeds=np.zeros((steps, experiment.n, 2)),
-        phase=np.zeros(steps, dtype=np.intp),
-        active=np.ones((steps, experiment.n), dtype=bool),
-    )
+@pytest.fixture
+def standing(shape: Experiment, recorded: Callable[..., Trajectory]) -> Callable[[np.ndarray], Trajectory]:
+    """Makes four states of robots that stand at projected points, all with heading 0."""
+
+    def make(points: np.ndarray) -> Trajectory:
+        poses = np.zeros((4, shape.n, 3))
+        poses[..., :2] = points - [shape.nid.projection_distance, 0.0]
+        return recorded(np.arange(4) * 0.1, poses, np.tile(points, (4, 1, 1)))
+
+    return make
 
 
-def test_robots_that_stand_in_the_shape_have_converged_from_the_start(shape: Experiment) -> None:
-    found = measure(shape, standing(shape, shape.target.positions))
+Standing = Callable[[np.ndarray], Trajectory]
+
+
+def test_robots_that_stand_in_the_shape_have_converged_from_the_start(shape: Experiment, standing: Standing) -> None:
+    found = measure(shape, standing(shape.target.positions))
     assert found.outcome == "converged"
     assert found.settling_time == 0.0
     assert found.error_sum.max() < 1e-12
     assert found.axle_error_sum.max() < 1e-12, "equal headings shift all axles alike"
 
 
-def test_the_error_sum_adds_up_absolute_errors(shape: Experiment) -> None:
-    found = measure(shape, standing(shape, shape.initial_points(0)))
+def test_the_error_sum_adds_up_absolute_errors(shape: Experiment, standing: Standing) -> None:
+    found = measure(shape, standing(shape.initial_points(0)))
     assert found.outcome == "not_converged"
     assert found.settling_time is None
     np.testing.assert_allclose(found.error_sum, np.abs(found.angle_errors).sum(axis=1))
 
 
-def test_the_separation_is_between_collision_centres(shape: Experiment) -> None:
+def test_the_separation_is_between_collision_centres(shape: Experiment, standing: Standing) -> None:
     """With l = 0.025 m the projected points are the collision centres."""
-    found = measure(shape, standing(shape, shape.initial_points(0)))
+    found = measure(shape, standing(shape.initial_points(0)))
     p = shape.initial_points(0)
     nearest = min(np.linalg.norm(p[a] - p[b]) for a in range(6) for b in range(a))
     assert found.separation.distance == pytest.approx(nearest)
 
 
-def test_a_run_that_ends_in_no_number_has_diverged_and_completed_no_phase(shape: Experiment) -> None:
-    run = standing(shape, shape.initial_points(0))
+def test_a_run_that_ends_in_no_number_has_diverged_and_completed_no_phase(
+    shape: Experiment, standing: Standing
+) -> None:
+    run = standing(shape.initial_points(0))
     run.points[-1] = run.poses[-1] = np.nan
     found = measure(shape, run)
     assert found.outcome == "diverged"
@@ -104,7 +107,7 @@ def test_each_phase_is_measured_at_its_own_end(moving: Callable[..., Experiment]
         assert end.distances[0] < 1e-12, "the leader integrates v_r"
 
 
-def test_axle_centres_keep_an_angle_error_where_headings_end_different(shape: Experiment) -> None:
+def test_axle_centres_keep_an_angle_error_where_headings_end_different(shape: Experiment, standing: Standing) -> None:
     found = measure(shape, simulate(shape))
     assert found.error_sum[-1] < 1e-6
     assert 0.01 < found.axle_error_sum[-1] < 0.5

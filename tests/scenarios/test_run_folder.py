@@ -1,6 +1,8 @@
 """Run folders: written whole or not at all."""
 
 import os
+from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -120,20 +122,14 @@ def test_a_place_that_cannot_be_written_is_refused_before_the_run(tmp_path: Path
     assert not entered
 
 
-def test_a_trajectory_read_again_is_bit_identical(tmp_path: Path) -> None:
+def test_a_trajectory_read_again_is_bit_identical(tmp_path: Path, recorded: Callable[..., Trajectory]) -> None:
     rng = np.random.default_rng(0)
-    run = Trajectory(
-        t=rng.normal(size=5),
-        poses=rng.normal(size=(5, 3, 3)),
-        points=rng.normal(size=(5, 3, 2)),
-        wheel_speeds=np.full((5, 3, 2), np.nan),
-        phase=np.arange(5),
-        active=rng.uniform(size=(5, 3)) < 0.5,
-    )
+    poses, points = rng.normal(size=(5, 3, 3)), rng.normal(size=(5, 3, 2))
+    run = recorded(rng.normal(size=5), poses, points, wheel_speeds=np.full((5, 3, 2), np.nan), phase=np.arange(5))
     run.save(tmp_path / "trajectory.npz", rng.normal(size=(5, 4)))
     again = Trajectory.read(tmp_path / "trajectory.npz")
-    for name in ("t", "poses", "points", "wheel_speeds", "phase", "active"):
-        assert getattr(again, name).tobytes() == getattr(run, name).tobytes()
+    for field in fields(Trajectory):
+        assert getattr(again, field.name).tobytes() == getattr(run, field.name).tobytes()
 
 
 @pytest.mark.parametrize("content", [b"", b"PK", b"\x93NUMPY nonsense"])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -109,18 +111,7 @@ def test_deadlocks_have_a_beginning_and_an_end() -> None:
     stuck = np.zeros_like(trajectory.stuck)
     stuck[5:9, 2] = 2.5
     stuck[20:, 4] = 3.0
-    changed = Trajectory(
-        trajectory.t,
-        trajectory.poses,
-        trajectory.points,
-        trajectory.wheel_speeds,
-        trajectory.phase,
-        trajectory.active,
-        trajectory.intervention,
-        trajectory.relaxation,
-        trajectory.blockers,
-        stuck,
-    )
+    changed = replace(trajectory, stuck=stuck)
     t = trajectory.t
     assert deadlocks(changed, 2.0) == [
         {"agent": 3, "from_s": float(t[5]), "until_s": float(t[9])},
