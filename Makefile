@@ -10,7 +10,7 @@ export RERUN_ANALYTICS_ENABLED := false
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install run test quick lint bench figures evidence clean
+.PHONY: help install run test quick lint check bench figures evidence clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -35,6 +35,9 @@ lint: $(STAMP) ## ruff and mypy
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+check: $(STAMP) ## run every scenario again and compare it with its baseline
+	$(BIN)/formation check
 
 bench: $(STAMP) ## benchmarks, with their targets
 	$(BIN)/pytest tests/benchmarks --benchmark-only --benchmark-disable-gc

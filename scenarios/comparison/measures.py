@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 FLOOR = 1e-9
-"""Radians or metres: what rounding alone may do to a run. docs/comparison.md measures 1e-12."""
+"""Radians or metres: far above what rounding does to a run that forgets it, far below what anybody cares for."""
 
 PERIODS = 1.5
 """Control periods by which a settling time may differ: a crossing that falls on a sample counts one later or earlier,

@@ -18,7 +18,7 @@ def structure(page: str) -> list[str]:
     lines = []
     measured = 0
     for line in page.splitlines():
-        if line.startswith(("| ", "|  |")):
+        if line.startswith("| "):
             cells = [cell.strip() for cell in line.strip("|").split("|")]
             if PLANTS[0] in cells:
                 measured = len(PLANTS)
