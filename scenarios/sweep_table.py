@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from scenarios.sweep import QUANTILES, ROWS, Share, Summary
-from scenarios.terminal import new_table
+from scenarios.terminal import new_table, print_table
 
 QUANTITIES = {
     "settling_time_s": ("settling time (s)", ".1f"),
@@ -27,7 +27,7 @@ def print_sweep(console: Console, summary: Summary, folder: Path) -> None:
         values = summary.quantiles[column]
         table.add_row(title, *(["-"] * len(QUANTILES) if values is None else (format(v, form) for v in values)))
     console.print()
-    console.print(table)
+    print_table(console, table)
     console.print(f"rows: {escape(str(folder / ROWS))}")
 
 

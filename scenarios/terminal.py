@@ -8,6 +8,7 @@ from contextlib import contextmanager
 
 from rich.console import Console
 from rich.markup import escape
+from rich.measure import Measurement
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
@@ -19,6 +20,9 @@ LEFT = frozenset(
 
 PROGRESS_INTERVAL = 0.1
 """Seconds between two updates of a progress bar: more often cannot be read, and costs time."""
+
+WIDEST = 1000
+"""Characters of a line, at most."""
 
 
 @contextmanager
@@ -50,3 +54,14 @@ def new_table(*columns: str, title: str | None = None) -> Table:
         left = column in LEFT
         table.add_column(column, justify="left" if left else "right", no_wrap=column not in ("title", "meaning"))
     return table
+
+
+def print_table(console: Console, table: Table) -> None:
+    """Print a table with all its digits: where it is wider than the terminal, the terminal wraps its lines."""
+    terminal = console.width
+    needed = Measurement.get(console, console.options.update(max_width=WIDEST), table).maximum
+    console.width = max(terminal, needed)
+    try:
+        console.print(table)
+    finally:
+        console.width = terminal

@@ -10,7 +10,7 @@ from scenarios.comparison.compare import worst_first
 from scenarios.comparison.documents import Folders
 from scenarios.comparison.rows import CASES, LISTED, MISSES, case_rows, miss_row
 from scenarios.comparison.update import Update
-from scenarios.terminal import new_table
+from scenarios.terminal import new_table, print_table
 
 
 def print_check(console: Console, check: Check) -> None:
@@ -18,13 +18,13 @@ def print_check(console: Console, check: Check) -> None:
     table = new_table(*CASES)
     for row in case_rows(check.comparisons):
         table.add_row(*map(escape, row[:-1]), row[-1], style="red" if row[-1].endswith("missed") else None)
-    console.print(table)
+    print_table(console, table)
     misses = worst_first(check.comparisons)
     if misses:
         table = new_table(*MISSES, title="\nMissed, the worst angle first")
         for pair in misses[:LISTED]:
             table.add_row(*map(escape, miss_row(*pair)))
-        console.print(table)
+        print_table(console, table)
         if len(misses) > LISTED:
             console.print(f"and {len(misses) - LISTED} more")
     console.print()
@@ -59,6 +59,6 @@ def print_update(console: Console, update: Update) -> None:
         table = new_table(*MISSES)
         for pair in misses[:LISTED]:
             table.add_row(*map(escape, miss_row(*pair)))
-        console.print(table)
+        print_table(console, table)
         if len(misses) > LISTED:
             console.print(f"and {len(misses) - LISTED} more")
