@@ -40,7 +40,7 @@ def print_folders(console: Console, check: Check, folders: Folders) -> None:
             console.print(f"formation replay {folders[comparison]}", markup=False)
     others = len(check.missed) - len(folders)
     if others:
-        console.print(f"{others} more runs missed; `formation run` makes them")
+        console.print(f"and {others} more; `formation run` makes them again")
 
 
 def print_update(console: Console, update: Update) -> None:
