@@ -30,6 +30,7 @@ class Guard:
         self._seen = (experiment.n, experiment.n + WALLS + len(experiment.arena.obstacles))
         self._observer, self._observed = experiment.graph.edges.T
         self._noise: Noise | None = None
+        self._period = experiment.scenario.plant.control_period_s
 
     def begin_period(
         self,

@@ -17,7 +17,7 @@ from scenarios.tracking import predicted_late_rates
 from scenarios.trajectory import Trajectory
 
 SCHEMA_VERSION = 1
-RECORDED_PACKAGES = ("angle-formation", "numpy", "pymunk")
+RECORDED_PACKAGES = ("angle-formation", "numpy", "pymunk", "numba", "daqp")
 """Versions that a result depends on."""
 
 

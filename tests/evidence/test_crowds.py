@@ -32,7 +32,7 @@ DISCS = (
 
 
 def swap(seed: int, radius: float, obstacles: tuple[Obstacle, ...], seconds: float = 180.0) -> tuple[np.ndarray, ...]:
-    """Robots on a circle drive to the opposite place, u = goal - p at 0.2 m/s at most: poses, distances, stuck."""
+    """Robots on a circle drive to the opposite place, at 0.2 m/s at most: poses, distances, stuck times."""
     angle = 2.0 * np.pi * np.arange(N) / N
     start = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     theta = np.random.default_rng(seed).uniform(-np.pi, np.pi, N)

@@ -88,7 +88,7 @@ def overlap(one: np.ndarray, other: np.ndarray) -> bool:
     return True
 
 
-def report(capsys: pytest.CaptureFixture[str], name: str, found: list[Run]) -> None:
+def report(name: str, found: list[Run]) -> None:
     settled = [r.settling_time for r in found if r.settling_time is not None]
     median = f"median settling {np.median(settled):.2f} s" if settled else "none settled"
     line = (
@@ -100,14 +100,13 @@ def report(capsys: pytest.CaptureFixture[str], name: str, found: list[Run]) -> N
         f"{sum(r.problems for r in found)} problems relaxed, {sum(r.deadlocked for r in found)} with deadlocks, "
         f"missed: {[r.seed for r in found if r.outcome != 'converged']}"
     )
-    with capsys.disabled():
-        print(f"\n{line}")
+    print(line)
 
 
 @pytest.mark.parametrize("scenario", ["shape", "maneuver", "maneuver-testbed"])
-def test_every_heading_seed_converges_without_contact(scenario: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_every_heading_seed_converges_without_contact(scenario: str) -> None:
     found = runs(scenario)
-    report(capsys, scenario, found)
+    report(scenario, found)
     assert all(r.outcome == "converged" for r in found)
     assert not any(r.contact for r in found)
     assert min(r.closest for r in found) >= COLLISION_DISTANCE
@@ -117,26 +116,25 @@ def test_every_heading_seed_converges_without_contact(scenario: str, capsys: pyt
 
 
 @pytest.mark.parametrize("scenario", ["shape", "maneuver"])
-def test_random_starts_on_the_floor_converge(scenario: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_random_starts_on_the_floor_converge(scenario: str) -> None:
     found = runs(scenario, FLOOR_STARTS)
-    report(capsys, f"{scenario}, random starts", found)
+    report(f"{scenario}, random starts", found)
     assert sum(r.outcome != "converged" for r in found) <= SEEDS // 500
     assert not any(r.contact for r in found)
 
 
-def test_the_filter_costs_at_most_a_quarter_of_the_settling_time(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_filter_costs_at_most_a_quarter_of_the_settling_time() -> None:
     medians = []
     for safety in ("none", "decentralised"):
         found = runs("shape", "plant.name=saturated", f"safety.filter={safety}")
-        report(capsys, f"shape, saturated, {safety}", found)
+        report(f"shape, saturated, {safety}", found)
         medians.append(np.median([r.settling_time for r in found if r.settling_time is not None]))
-    with capsys.disabled():
-        print(f"ratio {medians[1] / medians[0]:.3f}")
+    print(f"ratio {medians[1] / medians[0]:.3f}")
     assert medians[1] <= 1.25 * medians[0]
 
 
 @pytest.mark.parametrize("scenario", ["shape", "maneuver"])
-def test_noise_delay_and_halved_friction_bring_no_contact(scenario: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_noise_delay_and_halved_friction_bring_no_contact(scenario: str) -> None:
     found = runs(scenario, *DISTURBED, seeds=min(SEEDS, 100))
-    report(capsys, f"{scenario}, noise, delay, half the friction", found)
+    report(f"{scenario}, noise, delay, half the friction", found)
     assert not any(r.contact for r in found)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robots import GTERNAL, Arena, NearIdentityDiffeomorphism
+from robots import GTERNAL, Arena, NearIdentityDiffeomorphism, make_world
 from robots.obstacles import disc
 from robots.safety import FILTERS, FilterSettings, Noise, make_filter
 from robots.safety.protocol import WALLS
@@ -161,6 +161,25 @@ def test_a_robot_that_cannot_move_is_declared_stuck_and_tries_the_other_side_in_
     assert max(waits) > FilterSettings().stuck_time
     assert np.diff(waits).min() < -1.0  # the turn starts again, on the other side
     assert (safety.stuck[1:] == 0.0).all()
+
+
+def test_a_robot_in_a_notch_gets_out_on_the_right_when_the_left_leads_deeper_into_it() -> None:
+    """Robots 1 and 2 stand still, the place of robot 0 lies beyond robot 2. Once it has come here turned far to the
+    left, which is where they both are, it would wait for ever."""
+    start = np.array([[0.269, -0.417], [0.376, -0.529], [0.152, -0.519]])
+    goal = np.array([[0.045, -0.401], *start[1:]])
+    world = make_world("saturated", start, np.zeros(3), nid=NID, robot=GTERNAL)
+    safety = build((3,))
+    safety.stuck[0] = 4.0
+
+    def controller(points: np.ndarray, headings: np.ndarray) -> np.ndarray:
+        away = 0.6 * (goal - points)
+        body = (away.view(np.complex128) * np.conj(headings.view(np.complex128))).view(np.float64)
+        return safety.filter(points, headings, body, np.zeros((3, 2)), PERIOD)
+
+    for _ in range(1000):
+        world.step(controller, PERIOD)
+    np.testing.assert_allclose(world.points, goal, atol=1e-3)
 
 
 def test_two_robots_that_meet_head_on_pass_on_the_left_of_their_way() -> None:
