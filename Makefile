@@ -5,12 +5,10 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 SCENARIO ?= shape
 
-# The viewer's and the SDK's analytics stay off in everything that this file starts.
-export RERUN_ANALYTICS_ENABLED := false
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install run test quick lint check bench figures evidence clean
+.PHONY: help install run test quick lint check bench figures evidence screenshots clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -54,6 +52,9 @@ figures: $(STAMP) ## draw the figures of the documents
 
 evidence: $(STAMP) ## the Monte Carlo evidence over all seeds, printed (about 15 minutes)
 	EVIDENCE_SEEDS=500 $(BIN)/pytest tests/evidence -q -n auto --dist load -rP
+
+screenshots: $(STAMP) ## pictures of the viewer for docs/recording.md (needs xvfb, Vulkan in software, chromium)
+	$(BIN)/python docs/screenshots.py
 
 clean: ## remove the environment, caches and runs
 	rm -rf $(VENV) runs build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache .benchmarks

@@ -15,6 +15,8 @@ from scenarios.run_folder import write_text
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from scenarios.recording.viewer import Live
+
 DONE, MISSED, BAD_INPUT = 0, 1, 2
 """Exit codes: done; a comparison missed or a run did not reach its goal; bad input."""
 
@@ -67,6 +69,11 @@ def show(scenario: str, seed: int, changes: tuple[str, ...]) -> None:
 @click.option("--duration", type=float, metavar="S", help="Seconds to run instead of the scenario's own.")
 @click.option("--set", "changes", multiple=True, metavar="KEY=VALUE", help="Change a key of the scenario.")
 @click.option("--out", type=click.Path(path_type=Path), help="Run folder.  [default: runs/SCENARIO-PLANT-seedN]")
+@click.option("--recording/--no-recording", "recorded", default=True, help="Whether to write recording.rrd.")
+@click.option("--live", is_flag=True, help="Watch the run in a viewer, one that is open or a new one.")
+@click.option(
+    "--speed", type=click.FloatRange(min=0.0, min_open=True), help="With --live: simulated s per s.  [default: 1]"
+)
 def run(
     scenario: str,
     seed: int,
@@ -75,6 +82,9 @@ def run(
     duration: float | None,
     changes: tuple[str, ...],
     out: Path | None,
+    recorded: bool,
+    live: bool,
+    speed: float | None,
 ) -> None:
     """Run SCENARIO (a name or a file), print its result and write its run folder."""
     from scenarios.experiment import open_experiment
@@ -87,8 +97,20 @@ def run(
     experiment = open_experiment(scenario, changes, duration)
     if safety is not None and safety != experiment.safety:
         raise InputError(f"--safety {safety}: the plant {experiment.plant} has no robots to keep apart, expected none")
-    if not run_to_folder(experiment, seed, out, _console()):
+    if not run_to_folder(experiment, seed, out, _console(), recorded, _live(live, speed)):
         raise SystemExit(MISSED)
+
+
+@cli.command()
+@click.argument("runs", nargs=-1, required=True, metavar="RUN [RUN]", type=click.Path(path_type=Path))
+@click.option("--web", is_flag=True, help="In the browser; served to this machine alone.")
+def replay(runs: tuple[Path, ...], web: bool) -> None:
+    """Open the recording of a run, or of two runs beside each other, in the viewer."""
+    from scenarios.replay import replay as show_runs
+
+    if len(runs) > 2:
+        raise InputError(f"replay: expected one run folder or two, got {len(runs)}")
+    show_runs(runs, web, _console())
 
 
 @cli.command()
@@ -249,6 +271,16 @@ def _console() -> Console:
 
     # Where there is no terminal, wide enough for every table.
     return Console(highlight=False, soft_wrap=True, width=shutil.get_terminal_size((160, 25)).columns)
+
+
+def _live(live: bool, speed: float | None) -> Live | None:
+    if not live:
+        if speed is not None:
+            raise InputError("--speed: needs --live")
+        return None
+    from scenarios.recording.viewer import Live
+
+    return Live() if speed is None else Live(speed)
 
 
 def main() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.markup import escape
@@ -10,15 +11,35 @@ from rich.markup import escape
 from scenarios import run_folder
 from scenarios.experiment import Experiment
 from scenarios.metrics import Metrics, measure
+from scenarios.recording import file, viewer
 from scenarios.report import print_result
 from scenarios.result import result
 from scenarios.simulation import simulate
 from scenarios.terminal import progress_bar
 from scenarios.trajectory import Trajectory
 
+if TYPE_CHECKING:
+    from scenarios.recording.live import LiveView
+    from scenarios.recording.viewer import Live
 
-def run_to_folder(experiment: Experiment, seed: int, out: Path | None, console: Console) -> bool:
+
+def run_to_folder(
+    experiment: Experiment,
+    seed: int,
+    out: Path | None,
+    console: Console,
+    recorded: bool = True,
+    live: Live | None = None,
+) -> bool:
     """Run, write the run folder, print the result.
+
+    Args:
+        experiment: what to run.
+        seed: of the run.
+        out: the run folder; None for the default.
+        console: where the result is printed.
+        recorded: whether the folder gets a recording.
+        live: how a viewer watches the run; None for no viewer.
 
     Returns:
         Whether the run reached its goal.
@@ -28,14 +49,19 @@ def run_to_folder(experiment: Experiment, seed: int, out: Path | None, console: 
     """
     folder = out or run_folder.default_path(experiment.file.name, experiment.plant, seed)
     with run_folder.writing(folder) as scratch:
+        view = None if live is None else _open_view(experiment, seed, live, console)
         with progress_bar(console, experiment.file.name) as advance:
-            trajectory = simulate(experiment, seed, advance)
+            trajectory = simulate(experiment, seed, advance, view)
         metrics = measure(experiment, trajectory)
         summary = result(experiment, seed, trajectory, metrics)
         trajectory.save(scratch / run_folder.TRAJECTORY, metrics.angle_errors)
         run_folder.write_json(scratch / run_folder.SCENARIO, experiment.scenario.model_dump(mode="json"))
         run_folder.write_json(scratch / run_folder.RESULT, summary)
         _draw_overview(experiment, trajectory, metrics, scratch)
+        if recorded:
+            _record(scratch / run_folder.RECORDING, experiment, seed, trajectory, metrics, summary, console)
+    if view is not None and live is not None and not (view.finish(summary) and viewer.listening(live.port)):
+        console.print("live: the viewer went away; the run folder has everything")
     print_result(console, summary)
     console.print(f"run folder: {escape(str(folder))}")
     return metrics.outcome == "converged"
@@ -45,3 +71,31 @@ def _draw_overview(experiment: Experiment, trajectory: Trajectory, metrics: Metr
     from scenarios.figures import OVERVIEW, plot  # matplotlib takes as long to load as the run takes
 
     plot(experiment, trajectory, metrics, folder, [OVERVIEW], ["png", "pdf"])
+
+
+def _record(
+    path: Path,
+    experiment: Experiment,
+    seed: int,
+    trajectory: Trajectory,
+    metrics: Metrics,
+    summary: dict[str, Any],
+    console: Console,
+) -> None:
+    """Write the recording. A run is whole without it: replay rebuilds it."""
+    from scenarios.recording.encode import encode
+
+    try:
+        file.write(path, encode(experiment, seed, trajectory, metrics, summary))
+    except OSError as error:
+        console.print(f"recording: cannot be written: {error.strerror}; replay will rebuild it")
+
+
+def _open_view(experiment: Experiment, seed: int, live: Live, console: Console) -> LiveView | None:
+    """The viewer that watches the run; None where there is none, and then the run goes on without."""
+    if not viewer.ready(live.port):
+        console.print("live: no viewer, and none can be started here; the run goes on without")
+        return None
+    from scenarios.recording.live import LiveView, viewer_at
+
+    return LiveView(experiment, seed, viewer_at(live.port), live.speed)

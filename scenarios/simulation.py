@@ -113,6 +113,7 @@ def simulate(
     experiment: Experiment,
     seed: int | Sequence[int] = 0,
     on_period: Callable[[int, int], None] | None = None,
+    on_state: Callable[[Trajectory, int], None] | None = None,
 ) -> Trajectory:
     """Run an experiment.
 
@@ -120,6 +121,8 @@ def simulate(
         experiment: what to run.
         seed: of the run, or the seeds of a batch of runs, which only the plants without contact accept.
         on_period: called after each control period with the number of periods done and of all periods.
+        on_state: called after each control period with the trajectory, which has room for all periods, and the row of
+            the newest state; rows after it are not written yet.
 
     Returns:
         The recorded states; cut short after the first state that is not finite.
@@ -151,6 +154,18 @@ def simulate(
     active = np.empty((total + 1, *controller.active.shape), dtype=bool)
     safety = SafetyRecord(total + 1, (*batch, experiment.n), controller.guard)
     t[0], poses[0], points[0], active[0] = 0.0, world.poses, world.points, controller.active
+    trajectory = Trajectory(
+        t,
+        poses,
+        points,
+        wheel_speeds,
+        phase_index,
+        active,
+        safety.intervention,
+        safety.relaxation,
+        safety.blockers,
+        safety.stuck,
+    )
     done, start = 0, 0.0
     for index, (phase, count, period) in enumerate(schedule):
         controller.begin_phase(phase)
@@ -164,24 +179,15 @@ def simulate(
             safety.take(done)
             if on_period is not None:
                 on_period(done, total)
+            if on_state is not None:
+                on_state(trajectory, done)
             if not np.isfinite(world.poses.sum()):
                 total = done
                 break
         if total == done:
             break
         start += phase.duration
-    return Trajectory(
-        t,
-        poses,
-        points,
-        wheel_speeds,
-        phase_index,
-        active,
-        safety.intervention,
-        safety.relaxation,
-        safety.blockers,
-        safety.stuck,
-    ).until(total + 1)
+    return trajectory.until(total + 1)
 
 
 def periods(phase: Phase, control_period: float) -> tuple[int, float]:

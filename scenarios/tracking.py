@@ -45,12 +45,16 @@ def predicted_ends(experiment: Experiment, start: Real) -> Real:
 
 def reference(experiment: Experiment, trajectory: Trajectory) -> Real:
     """(T, n, 2) the moving end configuration p^ddagger(t) to which each phase converges (Theorem 2), metres."""
-    ends = predicted_ends(experiment, trajectory.points[0])
-    velocity = np.array([phase.velocity for phase in experiment.phases])
-    finish = np.cumsum([phase.duration for phase in experiment.phases])
-    rows = trajectory.phase
-    ahead = (finish[rows] - trajectory.t)[:, None] * velocity[rows]
-    return ends[rows] - ahead[:, None, :]
+    return moving_ends(experiment, trajectory.points[0], trajectory.t, trajectory.phase)
+
+
+def moving_ends(experiment: Experiment, start: Real, t: Real, phase: NDArray[np.intp]) -> Real:
+    """The same from a start (n, 2), metres, at times t (T,), seconds, of the phases with the indices ``phase`` (T,)."""
+    ends = predicted_ends(experiment, start)
+    velocity = np.array([each.velocity for each in experiment.phases])
+    finish = np.cumsum([each.duration for each in experiment.phases])
+    ahead = (finish[phase] - t)[:, None] * velocity[phase]
+    return ends[phase] - ahead[:, None, :]
 
 
 def track(experiment: Experiment, trajectory: Trajectory) -> Tracking:

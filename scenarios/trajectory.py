@@ -52,7 +52,11 @@ class Trajectory:
 
     def until(self, rows: int) -> Trajectory:
         """The first ``rows`` rows."""
-        return Trajectory(*(getattr(self, field.name)[:rows] for field in fields(self)))
+        return self.between(0, rows)
+
+    def between(self, first: int, end: int) -> Trajectory:
+        """The rows from ``first`` up to, not including, ``end``."""
+        return Trajectory(*(getattr(self, field.name)[first:end] for field in fields(self)))
 
     def save(self, path: Path, angle_errors: Real) -> None:
         """Write ``trajectory.npz``, with the angle errors (T, m), radians, beside the states."""

@@ -1,0 +1,64 @@
+"""Colours and sizes of a recording, for the viewer's dark theme."""
+
+from __future__ import annotations
+
+Colour = tuple[int, int, int]
+
+AGENTS: tuple[Colour, ...] = (
+    (64, 150, 240),
+    (240, 110, 50),
+    (20, 190, 140),
+    (225, 140, 190),
+    (245, 190, 60),
+    (120, 205, 250),
+    (190, 90, 150),
+    (200, 190, 120),
+)
+"""Colours of agents 1, 2, 3, ..., repeated from the ninth on: the hues of the figures, lighter. Red is for limits."""
+
+BACKGROUND: Colour = (16, 18, 22)
+FLOOR: Colour = (120, 125, 135)
+WALL: Colour = (200, 205, 215)
+GRID: Colour = (32, 35, 41)
+TEXT: Colour = (240, 242, 246)
+"""Of labels in the arena: the light theme puts them on grey, the dark one on black."""
+
+WHEEL: Colour = (225, 228, 235)
+SENSING: Colour = (140, 147, 160)
+GHOST: Colour = (74, 80, 92)
+MEASURED: Colour = (85, 165, 250)
+SECOND: Colour = (250, 200, 80)
+LIMIT: Colour = (230, 70, 70)
+PREDICTED: Colour = (150, 158, 172)
+GOOD: Colour = (45, 105, 62)
+BAD: Colour = (165, 50, 50)
+PENDING: Colour = (135, 105, 50)
+GOAL: Colour = (90, 190, 110)
+PHASES: tuple[Colour, ...] = ((60, 90, 150), (120, 80, 150), (45, 115, 125), (120, 90, 70))
+"""Colours of the phases, repeated from the fifth on."""
+
+GRID_STEP = 0.5
+"""Metres between two lines of the floor's grid."""
+
+TICK_GAP = 0.12
+"""Metres between the floor's side and a coordinate beside it."""
+
+ARROW_INSET = 0.085
+"""Metres of a sensing arrow that each of its two robots covers."""
+
+TRAIL_STEP = 0.1
+"""Seconds between two points of a trail."""
+
+TRAIL_LENGTH = 20.0
+"""Seconds of trail behind each robot."""
+
+
+def agent_colour(row: int) -> Colour:
+    """The colour of the agent in array row ``row``, in the arena and in every plot."""
+    return AGENTS[row % len(AGENTS)]
+
+
+def tint(colour: Colour, share: float) -> Colour:
+    """The colour at ``share`` of its brightness, as a paint on the dark floor."""
+    red, green, blue = (round(share * channel) for channel in colour)
+    return red, green, blue

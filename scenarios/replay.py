@@ -1,0 +1,59 @@
+"""Open runs in the viewer; a recording that is lost or damaged is rebuilt from the run's states."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+
+from scenarios import run_folder
+from scenarios.recording import file, viewer
+
+
+def replay(folders: Sequence[Path], web: bool, console: Console) -> None:
+    """Show one run, or two runs beside each other, and wait until the viewer is closed.
+
+    Raises:
+        InputError: a folder does not hold a run, or the viewer does not open.
+    """
+    with tempfile.TemporaryDirectory(prefix="formation-replay-") as scratch:
+        single = len(folders) == 1
+        path = recording_of(folders[0], Path(scratch), console) if single else _pair(folders, Path(scratch))
+        viewer.show(path, web)
+
+
+def recording_of(folder: Path, scratch: Path, console: Console) -> Path:
+    """The recording of a run, rebuilt if it has to be: in its folder, or in ``scratch`` where that cannot be written.
+
+    Raises:
+        InputError: the folder does not hold a run.
+    """
+    path = folder / run_folder.RECORDING
+    wrong = file.damage(path)
+    if wrong is None and run_folder.is_run(folder):
+        return path
+    run = run_folder.read(folder)
+    from scenarios.recording.encode import encode_run
+
+    content = encode_run(run)
+    try:
+        file.write(path, content)
+    except OSError as error:
+        kept = f"rebuilt outside the folder, which cannot be written ({error.strerror}),"
+        path = scratch / run_folder.RECORDING
+        file.write(path, content)
+    else:
+        kept = "rebuilt"
+    console.print(f"{folder / run_folder.RECORDING}: {wrong}, {kept} from {run_folder.TRAJECTORY}")
+    return path
+
+
+def _pair(folders: Sequence[Path], scratch: Path) -> Path:
+    runs = [run_folder.read(folder) for folder in folders]
+    from scenarios.recording.encode import encode_pair
+
+    path = scratch / run_folder.RECORDING
+    file.write(path, encode_pair(runs))
+    return path

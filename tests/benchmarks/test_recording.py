@@ -1,0 +1,68 @@
+"""What a recording costs beside the run itself: encoding and writing it, and once per process the import of rerun."""
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from scenarios.experiment import Experiment, build, open_experiment
+from scenarios.load import ScenarioFile, load
+from scenarios.metrics import Metrics, measure
+from scenarios.recording.encode import encode
+from scenarios.recording.file import write
+from scenarios.result import result
+from scenarios.simulation import simulate
+from scenarios.trajectory import Trajectory
+
+STEPS, ROBOTS = 3600, 200
+
+
+def record(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, folder: Path) -> None:
+    summary = result(experiment, 0, trajectory, metrics)
+    write(folder / "recording.rrd", encode(experiment, 0, trajectory, metrics, summary))
+
+
+def crowd() -> tuple[Experiment, Trajectory]:
+    """Two hundred robots on a random graph that circle about their targets: states without a simulation."""
+    random = {"agents": ROBOTS, "seed": 1, "radius_m": 12.0, "min_separation_m": 0.3, "min_angle_deg": 5.0}
+    scenario = load("random-50").scenario
+    changed = scenario.model_copy(update={"random_formation": scenario.random_formation.model_copy(update=random)})
+    experiment = build(ScenarioFile("crowd", "crowd", "", changed))
+    t = np.linspace(0.0, 120.0, STEPS)
+    turn = t[:, None] + np.arange(ROBOTS)
+    circle = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    points = experiment.target.positions + circle
+    trajectory = Trajectory(
+        t=t,
+        poses=np.concatenate([points, turn[..., None]], axis=-1),
+        points=points,
+        wheel_speeds=circle,
+        phase=np.zeros(STEPS, dtype=np.intp),
+        active=np.ones((STEPS, ROBOTS), dtype=bool),
+        intervention=np.zeros((STEPS, ROBOTS)),
+        relaxation=np.zeros((STEPS, ROBOTS)),
+        blockers=np.full((STEPS, ROBOTS, 3), -1, dtype=np.int32),
+        stuck=np.zeros((STEPS, ROBOTS)),
+    )
+    return experiment, trajectory
+
+
+def test_a_recording_adds_at_most_300_ms_to_a_maneuver(benchmark: Any, target: Any, tmp_path: Path) -> None:
+    experiment = open_experiment("maneuver")
+    trajectory = simulate(experiment, 0)
+    metrics = measure(experiment, trajectory)
+    benchmark(record, experiment, trajectory, metrics, tmp_path)
+    target("recording a 120 s maneuver of 6 robots", benchmark.stats.stats.median, 0.3, "s")
+
+
+def test_two_hundred_robots_are_recorded_within_3_s(benchmark: Any, target: Any, tmp_path: Path) -> None:
+    experiment, trajectory = crowd()
+    metrics = measure(experiment, trajectory)
+    benchmark.pedantic(record, (experiment, trajectory, metrics, tmp_path), rounds=3)
+    target(f"recording {ROBOTS} robots x {STEPS} steps", benchmark.stats.stats.median, 3.0, "s")
+
+
+def test_a_process_that_imports_rerun(benchmark: Any) -> None:
+    benchmark.pedantic(subprocess.run, ([sys.executable, "-c", "import rerun"],), {"check": True}, rounds=3)
