@@ -70,7 +70,7 @@ def run_to_folder(
 def _draw_overview(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, folder: Path) -> None:
     from scenarios.figures import OVERVIEW, plot  # matplotlib takes as long to load as the run takes
 
-    plot(experiment, trajectory, metrics, folder, [OVERVIEW], ["png", "pdf"])
+    plot(experiment, trajectory, metrics, folder, [OVERVIEW], ["png"])  # `formation plot` draws the rest, and for print
 
 
 def _record(

@@ -61,9 +61,8 @@ def test_a_run_read_back_is_the_run_that_was_made(finished: Path) -> None:
         np.testing.assert_array_equal(again.trajectory.poses, data["poses"])
 
 
-def test_a_run_leaves_its_overview_as_png_and_pdf(finished: Path) -> None:
+def test_a_run_leaves_its_overview_as_a_picture(finished: Path) -> None:
     assert (finished / "figure-motion.png").read_bytes().startswith(b"\x89PNG")
-    assert (finished / "figure-motion.pdf").read_bytes().startswith(b"%PDF")
 
 
 def test_plot_draws_what_the_run_drew(finished: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
