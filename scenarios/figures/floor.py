@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgb
-from matplotlib.patches import Rectangle
+from matplotlib.patches import Polygon, Rectangle
 from numpy.typing import NDArray
 
 from formation import SensingGraph
@@ -22,6 +22,8 @@ Limits = tuple[float, float, float, float]
 BEYOND = "#EDEDED"
 """Colour of the ground beyond the floor."""
 
+OBSTACLE = "#BDBDBD"
+
 MARGIN = 0.05
 """Free ground around all that is shown, as a share of its longer side."""
 
@@ -36,7 +38,7 @@ def limits(arena: Arena, poses: Real) -> Limits:
 
 
 def prepare(axes: Axes, arena: Arena, shown: Limits) -> None:
-    """Limits, labels with units, equal aspect, and the floor."""
+    """Limits, labels with units, equal aspect, the floor and its obstacles."""
     x0, x1, y0, y1 = shown
     axes.set(
         xlim=(x0, x1), ylim=(y0, y1), xlabel="\U0001d465 (m)", ylabel="\U0001d466 (m)", aspect="equal", facecolor=BEYOND
@@ -44,6 +46,8 @@ def prepare(axes: Axes, arena: Arena, shown: Limits) -> None:
     corner, width, height = arena.corners[0], arena.x[1] - arena.x[0], arena.y[1] - arena.y[0]
     edge = 1.6 if arena.walls else 0.5
     axes.add_patch(Rectangle(tuple(corner), width, height, facecolor="white", edgecolor=INK, linewidth=edge, zorder=0))
+    for obstacle in arena.obstacles:
+        axes.add_patch(Polygon(obstacle.outline, facecolor=OBSTACLE, edgecolor=INK, linewidth=0.5, zorder=1))
 
 
 def draw_trails(axes: Axes, trajectory: Trajectory, width: float = 0.7) -> None:

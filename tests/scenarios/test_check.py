@@ -27,7 +27,6 @@ from scenarios.experiment import open_experiment
 from scenarios.load import LIBRARY, library
 from scenarios.pool import run_all
 from scenarios.run_folder import is_run
-from scenarios.schema import Scenario
 
 SHORT = ("duration_s=20",)
 CASES = tuple(Case(plant=plant, seeds=(0,), changes=SHORT) for plant in ("saturated", "pymunk"))
@@ -135,10 +134,7 @@ def filter_off(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         sign_flipped,
         projection_ten_percent_longer,
         wheels_five_percent_slower,
-        pytest.param(
-            filter_off,
-            marks=pytest.mark.skipif("safety" not in Scenario.model_fields, reason="scenarios have no safety filter"),
-        ),
+        filter_off,
     ],
 )
 def test_a_mutation_is_caught_even_by_what_another_machine_is_allowed(
