@@ -30,17 +30,20 @@ LOG_RANGE = (-14.0, 1.5)
 TIME_MARGIN = 1.08
 """Length of the plots' time axis over the run's, so that its last label has room."""
 
-FIGURES = (
-    {plots.ANGLES: "Angle errors (rad)"},
-    {plots.ERROR_SUM: "log10 of sum, goal green"},
-    {plots.SEPARATION: "Closest pair (m), limit red"},
-    {plots.WHEELS: "Wheels (rad/s)", plots.INTERVENTIONS: "Filter (m/s)"},
-    {plots.SCALE: "Scale, predicted grey"},
-    {plots.ORIENTATION: "Orientation (deg)"},
-    {plots.CENTROID: "Centroid (m): x blue, y gold"},
-    {plots.DISTANCE: "log10 distance to predicted"},
-)
-"""Plots and their titles, by place. A title says what a legend would: a legend hides what it explains."""
+FIGURES = {
+    plots.ANGLES: "Angle errors (rad)",
+    plots.ERROR_SUM: "log10 of sum, goal green",
+    plots.SEPARATION: "Closest pair (m), limit red",
+    plots.WHEELS: "Wheels (rad/s), limits red",
+    plots.SCALE: "Scale, predicted grey",
+    plots.ORIENTATION: "Orientation (deg)",
+    plots.CENTROID: "Centroid (m): x blue, y gold",
+    plots.DISTANCE: "log10 distance to predicted",
+}
+"""Plots and their titles. A title says what a legend would: a legend hides what it explains."""
+
+FILTER = {plots.INTERVENTIONS: "Filter (m/s)"}
+"""What the safety filter changes, behind the summary."""
 
 SHARED = {
     plots.ERROR_SUM: "log10 of angle error sum",
@@ -55,20 +58,12 @@ def single(experiment: Experiment, points: Real, live: bool = False) -> rrb.Blue
     """The layout for one run whose projected points are (T, n, 2), metres; a live one follows the newest data."""
     left = rrb.Vertical(
         arena(experiment, points, "", "Arena (m)"),
-        rrb.Horizontal(states([""], length(experiment)), notes("")),
-        row_shares=[2.2, 1.0],
+        rrb.Horizontal(states([""], length(experiment)), notes(experiment, "")),
+        row_shares=[1.85, 1.0],
     )
-    absent = {plots.WHEELS} if experiment.plant == "single_integrator" else set()
-    absent |= {plots.INTERVENTIONS} if experiment.safety == "none" else set()
-    span = spans(experiment, points)
-    right = rrb.Grid(
-        *(
-            rrb.Tabs(*figures([""], shown, length(experiment), span))
-            for group in FIGURES
-            if (shown := {entity: name for entity, name in group.items() if entity not in absent})
-        ),
-        grid_columns=2,
-    )
+    wheels = experiment.plant != "single_integrator"
+    shown = {entity: name for entity, name in FIGURES.items() if wheels or entity != plots.WHEELS}
+    right = rrb.Grid(*figures([""], shown, length(experiment), spans(experiment, points)), grid_columns=2)
     return _layout(rrb.Horizontal(left, right, column_shares=[1.35, 1.0]), "following" if live else "playing")
 
 
@@ -81,9 +76,12 @@ def pair(
     both = [spans(experiment, each) for experiment, each in zip(experiments, points, strict=True)]
     span = {entity: (min(s[entity][0] for s in both), max(s[entity][1] for s in both)) for entity in both[0]}
     shared = rrb.Grid(*figures(roots, SHARED, seconds, span), grid_columns=len(SHARED))
-    texts = [rrb.Horizontal(states([root], seconds), notes(root)) for root in roots]
+    texts = [
+        rrb.Horizontal(states([root], seconds), notes(experiment, root))
+        for experiment, root in zip(experiments, roots, strict=True)
+    ]
     return _layout(
-        rrb.Vertical(rrb.Horizontal(*arenas), shared, rrb.Horizontal(*texts), row_shares=[2.0, 1.0, 1.2]), "playing"
+        rrb.Vertical(rrb.Horizontal(*arenas), shared, rrb.Horizontal(*texts), row_shares=[1.6, 0.9, 1.3]), "playing"
     )
 
 
@@ -123,8 +121,8 @@ def states(roots: Sequence[str], seconds: float) -> rrb.StateTimelineView:
     )
 
 
-def notes(root: str) -> rrb.Tabs:
-    """The summary page and the events."""
+def notes(experiment: Experiment, root: str) -> rrb.Tabs:
+    """The summary page, the events, and what the safety filter changes."""
     return rrb.Tabs(
         rrb.TextDocumentView(origin=_path(root, summary.SUMMARY), name="Summary"),
         rrb.TextLogView(
@@ -132,6 +130,8 @@ def notes(root: str) -> rrb.Tabs:
             name="Events",
             columns=rrb.TextLogColumns(timeline_columns=[TIMELINE], text_log_columns=["loglevel", "body"]),
         ),
+        *(figures([root], FILTER, length(experiment), {}) if experiment.safety != "none" else []),
+        active_tab="Summary",
     )
 
 

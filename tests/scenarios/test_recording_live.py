@@ -15,12 +15,13 @@ import rerun as rr
 from rerun.chunk import RrdReader
 from rich.console import Console
 
+from robots.testbed import COLLISION_DISTANCE
 from scenarios import run_folder
 from scenarios.cli import cli
 from scenarios.errors import InputError
 from scenarios.experiment import open_experiment
 from scenarios.metrics import measure
-from scenarios.recording import plots, viewer
+from scenarios.recording import plots, timeline, viewer
 from scenarios.recording.file import damage
 from scenarios.recording.live import FRAME, LiveView, viewer_at
 from scenarios.recording.recorder import TIMELINE
@@ -75,13 +76,17 @@ def received_rows(path: Path, entity: str) -> set[int]:
 
 
 def test_every_control_period_reaches_the_viewer(tmp_path: Path) -> None:
-    experiment = open_experiment("shape", (), 3.0)
+    experiment = open_experiment("shape", ("safety.filter=none",), 3.0)
     with receiver(tmp_path) as (_, port, saved):
         view = LiveView(experiment, 0, viewer_at(port), FAST)
         trajectory = simulate(experiment, 0, on_state=view)
         assert view.finish(result(experiment, 0, trajectory, measure(experiment, trajectory)))
     expected = set(np.round(trajectory.t * 1e9).astype(int).tolist())
     assert received_rows(saved, f"{plots.ANGLES}/value") == expected
+    near = measure(experiment, trajectory).separation.distance < COLLISION_DISTANCE
+    changes = np.flatnonzero(np.append(True, near[1:] != near[:-1]))
+    assert len(changes) > 1
+    assert received_rows(saved, timeline.DISTANCE) == set(np.round(trajectory.t[changes] * 1e9).astype(int).tolist())
 
 
 def test_a_run_whose_viewer_is_killed_goes_on_and_keeps_everything(
