@@ -23,6 +23,10 @@ START = 15.0
 """Seconds that a viewer may take to start."""
 
 
+OPENING = 1.0
+"""Seconds after which a viewer that listens has opened its window or ended."""
+
+
 class Live(NamedTuple):
     """How a run is watched.
 
@@ -86,6 +90,15 @@ def ready(port: int) -> bool:
     deadline = time.monotonic() + START
     while viewer.poll() is None and time.monotonic() < deadline:
         if listening(port):
-            return True
+            return _stays(viewer)
         time.sleep(0.05)
+    return False
+
+
+def _stays(viewer: subprocess.Popen[bytes]) -> bool:
+    """Whether a viewer that listens goes on to open its window: without a screen it ends right after."""
+    try:
+        viewer.wait(OPENING)
+    except subprocess.TimeoutExpired:
+        return True
     return False

@@ -123,6 +123,14 @@ def test_a_viewer_that_cannot_start_is_no_viewer(monkeypatch: pytest.MonkeyPatch
     assert not viewer.ready(free_port())
 
 
+def test_a_viewer_without_a_screen_is_no_viewer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, value in {"CI": "true", "HOME": str(tmp_path)}.items():
+        monkeypatch.setenv(name, value)
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"):
+        monkeypatch.delenv(name, raising=False)
+    assert not viewer.ready(free_port())
+
+
 def test_a_watched_run_is_the_run(tmp_path: Path) -> None:
     experiment = open_experiment("shape", (), 2.0)
     with receiver(tmp_path) as (_, port, _):
