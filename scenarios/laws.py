@@ -82,8 +82,12 @@ def _share(law: Law, bias: float, starts: int, advance: Callable[[int, int], Non
 
 
 def markdown(shares: list[Share], starts: int) -> str:
-    """The comparison as a Markdown table."""
+    """The comparison as a Markdown page."""
     lines = [
+        "# The laws side by side",
+        "",
+        "Written by `formation laws --markdown docs/laws.md`.",
+        "",
         f"| law | measures | frame | fixes | right shape | with {COMPASS_BIAS_DEG:g} deg compass error |",
         "|---|---|---|---|---:|---:|",
     ]

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from formation import Phase
+from scenarios.controller import Controller
 from scenarios.experiment import Experiment
-from scenarios.simulation import Controller, simulate
+from scenarios.simulation import simulate
 
 LAWS = ["stationary", "displacement", "distance", "bearing"]
 Moving = Callable[..., Experiment]
