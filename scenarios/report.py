@@ -182,6 +182,8 @@ def print_result(console: Console, result: dict[str, Any]) -> None:
             f"agents {near['agents'][0]} and {near['agents'][1]}"
         )
     _print_safety(console, result)
+    if result["plant"] == "pymunk":
+        console.print(f"contacts: {_contacts(result['contacts'])}")
     testbed = result["testbed"]
     console.print(f"testbed: {'[green]accepted' if testbed['accepted'] else '[red]rejected'}")
     for violation in testbed["violations"]:
@@ -257,6 +259,13 @@ def _print_safety(console: Console, result: dict[str, Any]) -> None:
         until = deadlock["until_s"]
         end = "never broken" if until is None else f"broken at {until:.1f} s"
         console.print(f"  deadlock of agent {deadlock['agent']} declared at {deadlock['from_s']:.1f} s, {end}")
+
+
+def _contacts(contacts: dict[str, Any]) -> str:
+    if contacts["first"] is None:
+        return "none"
+    who = " and ".join(str(agent) for agent in contacts["first"]["agents"])
+    return f"in {contacts['periods']} control periods, first agents {who} at {contacts['first']['time_s']:.2f} s"
 
 
 def _describe(violation: dict[str, Any]) -> str:

@@ -58,6 +58,7 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
             "time_s": float(trajectory.t[closest]),
             "agents": agents.numbers(metrics.separation.pairs[closest]).tolist(),
         },
+        "contacts": _contacts(trajectory),
         "testbed": {
             "accepted": metrics.verdict.accepted,
             "violations": [_violation(v) for v in metrics.verdict.violations],
@@ -84,6 +85,22 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
             for end in metrics.phases
         ],
         **safety_result(experiment, trajectory),
+    }
+
+
+def _contacts(trajectory: Trajectory) -> dict[str, Any]:
+    """In how many control periods any agent touched another one, a wall or an obstacle, who, and who first."""
+    periods = np.flatnonzero(trajectory.contact.any(axis=1))
+    if not periods.size:
+        return {"periods": 0, "agents": [], "first": None}
+    first = periods[0]
+    return {
+        "periods": len(periods),
+        "agents": agents.numbers(np.flatnonzero(trajectory.contact.any(axis=0))).tolist(),
+        "first": {
+            "time_s": float(trajectory.t[first]),
+            "agents": agents.numbers(np.flatnonzero(trajectory.contact[first])).tolist(),
+        },
     }
 
 

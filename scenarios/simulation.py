@@ -57,6 +57,7 @@ def simulate(
     points = np.empty((total + 1, *world.points.shape))
     wheel_speeds = np.empty_like(points)
     phase_index = np.zeros(total + 1, dtype=np.intp)
+    contact = np.zeros(points.shape[:-1], dtype=bool)
     active = np.empty((total + 1, *controller.active.shape), dtype=bool)
     safety = SafetyRecord(total + 1, (*batch, experiment.n), controller.guard)
     t[0], poses[0], points[0], wheel_speeds[0] = 0.0, world.poses, world.points, world.wheel_speeds
@@ -67,6 +68,7 @@ def simulate(
         points,
         wheel_speeds,
         phase_index,
+        contact,
         active,
         safety.intervention,
         safety.relaxation,
@@ -82,7 +84,7 @@ def simulate(
             done += 1
             t[done] = start + phase.duration * (step / count)
             poses[done], points[done], wheel_speeds[done] = world.poses, world.points, world.wheel_speeds
-            phase_index[done], active[done] = index, controller.active
+            phase_index[done], contact[done], active[done] = index, world.contacts, controller.active
             safety.take(done)
             if on_period is not None:
                 on_period(done, total)

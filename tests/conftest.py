@@ -64,6 +64,7 @@ def recorded() -> Callable[..., Trajectory]:
         nothing = {
             "wheel_speeds": np.zeros((*robots, 2)),
             "phase": np.zeros(len(t), dtype=np.intp),
+            "contact": np.zeros(robots, dtype=bool),
             "active": np.ones(robots, dtype=bool),
             "intervention": np.zeros(robots),
             "relaxation": np.zeros(robots),

@@ -36,6 +36,7 @@ _STATE = (
     batch.BodyFields.POSITION | batch.BodyFields.ANGLE | batch.BodyFields.VELOCITY | batch.BodyFields.ANGULAR_VELOCITY
 )
 _STATE_WIDTH = 6
+_BODIES = batch.ArbiterFields.BODY_A_ID | batch.ArbiterFields.BODY_B_ID
 _COMMAND = batch.BodyFields.VELOCITY | batch.BodyFields.ANGULAR_VELOCITY
 
 
@@ -66,7 +67,8 @@ class Contact:
         self._to_twist = robot.drive.to_twist.T
         self.space = _space(self.poses, robot, arena)
         self.wheel_speeds = np.zeros((n, 2))
-        self._state = batch.Buffer()
+        self._row_of = {body.id: row for row, body in enumerate(list(self.space.bodies)[:n])}
+        self._state, self._arbiters = batch.Buffer(), batch.Buffer()
         self._command = np.zeros((2 * n, 3))
         self._command_buffer = batch.Buffer()
         self._command_buffer.set_float_buf(self._command)
@@ -100,6 +102,12 @@ class Contact:
         self.poses[:, :2] = axle
         self.poses[:, 2] = theta
         self.points = axle + self._l * self.headings
+        self._arbiters.clear()
+        batch.get_space_arbiters(self.space, _BODIES, self._arbiters)
+        self.contacts = np.zeros(self._n, dtype=bool)
+        for body in memoryview(self._arbiters.int_buf()).cast("P"):
+            if (row := self._row_of.get(body)) is not None:  # walls and obstacles belong to no robot
+                self.contacts[row] = True
 
 
 def _space(poses: Real, robot: RobotModel, arena: Arena | None) -> pymunk.Space:

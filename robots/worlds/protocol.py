@@ -25,6 +25,7 @@ class World(Protocol):
         poses: (..., n, 3) x, y, theta of the axle centres, metres and radians. theta is continuous, not wrapped.
         points: (..., n, 2) projected points, metres.
         headings: (..., n, 2) unit vectors of the headings.
+        contacts: (..., n) which robots touched a robot, a wall or an obstacle in the last period.
         wheel_speeds: (..., n, 2) left and right wheel speeds of the last period, rad/s; NaN where there are no wheels.
     """
 
@@ -32,6 +33,7 @@ class World(Protocol):
     points: Real
     headings: Real
     wheel_speeds: Real
+    contacts: NDArray[np.bool_]
 
     def step(self, controller: Controller, period: float) -> None:
         """Advance the state by one control period, seconds."""

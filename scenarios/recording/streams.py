@@ -38,6 +38,7 @@ MOTION: tuple[Callable[[Recorder, Piece], None], ...] = (
     timeline.goal,
     timeline.safety,
     timeline.separation,
+    timeline.contacts,
     timeline.floor,
 )
 """What is known of each control period."""

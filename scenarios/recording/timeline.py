@@ -97,6 +97,16 @@ def separation(recorder: Recorder, piece: Piece) -> None:
     _events(recorder, "separation", piece.t[begins], texts, rr.TextLogLevel.WARN)
 
 
+def contacts(recorder: Recorder, piece: Piece) -> None:
+    """An event for each agent that begins to touch another one, a wall or an obstacle."""
+    touches = piece.trajectory.contact
+    for row in range(piece.experiment.n):
+        at = piece.changes(touches[:, row])
+        begins = piece.t[at[touches[at, row]]]
+        texts = [f"{agents.name(row)} touches something"] * len(begins)
+        _events(recorder, "contacts", begins, texts, rr.TextLogLevel.WARN)
+
+
 def floor(recorder: Recorder, piece: Piece) -> None:
     """Whether all axle centres are on the floor, with an event for each that leaves it."""
     outside = ~piece.experiment.arena.contains(piece.trajectory.poses[..., :2])

@@ -173,3 +173,21 @@ def test_a_robot_far_away_is_not_moved_by_a_crash() -> None:
 def test_the_bodies_hold_one_run_only() -> None:
     with pytest.raises(ValueError, match=r"poses of shape \(n, 3\), got \(2, 1, 3\)"):
         Contact(np.zeros((2, 1, 3)), NID, GTERNAL)
+
+
+def test_only_robots_that_touch_something_are_reported_and_only_while_they_do() -> None:
+    """Robot 0 drives at robot 1 until it pushes it, and backs away; robot 2 stands by."""
+    contact = world([(0.0, 0.0, 0.0), (0.2, 0.0, 0.0), (0.2, 0.5, 0.0)])
+    while contact.points[1, 0] - contact.points[0, 0] > CHASSIS.length + 1e-3:
+        assert contact.contacts.tolist() == [False, False, False]
+        drive(contact, (0.1, 0.0), (0.0, 0.0), (0.0, 0.0), periods=1)
+    drive(contact, (0.1, 0.0), (0.0, 0.0), (0.0, 0.0), periods=3)
+    assert contact.contacts.tolist() == [True, True, False]
+    drive(contact, (-0.1, 0.0), (0.0, 0.0), (0.0, 0.0), periods=10)
+    assert contact.contacts.tolist() == [False, False, False]
+
+
+def test_a_wall_is_touched_by_the_robot_alone() -> None:
+    contact = world([(0.0, 0.0, 0.0), (-0.5, 0.0, 0.0)], arena=Arena(x=(-1.0, 0.2), y=(-1.0, 1.0), walls=True))
+    drive(contact, (0.1, 0.0), (0.0, 0.0), periods=90)
+    assert contact.contacts.tolist() == [True, False]

@@ -115,6 +115,7 @@ def test_every_stream_has_its_entities(columns: Columns) -> None:
         f"/{timeline.FLOOR}": {"state"},
         f"/{timeline.EVENTS}/phases": {"text", "level"},
         f"/{timeline.EVENTS}/separation": {"text", "level"},
+        f"/{timeline.EVENTS}/contacts": {"text", "level"},
         "/summary": {"text"},
         "/__properties/run": {"scenario", "seed", "plant", "safety", "outcome", "versions"},
     }
@@ -218,6 +219,13 @@ def test_states_change_exactly_where_the_limit_is_crossed(run: Path, columns: Co
     assert close.any()
     assert len(columns[f"/{timeline.DISTANCE}"]["state"][1]) == 1 + np.count_nonzero(close[1:] != close[:-1])
     assert len(columns[f"/{timeline.EVENTS}/separation"]["text"][1]) == np.count_nonzero(close[1:] & ~close[:-1])
+
+
+def test_every_agent_that_begins_to_touch_something_is_an_event(run: Path, columns: Columns) -> None:
+    touches = run_folder.read(run).trajectory.contact
+    begins = np.count_nonzero(touches[1:] & ~touches[:-1])
+    assert begins > 0
+    assert len(columns[f"/{timeline.EVENTS}/contacts"]["text"][1]) == begins
 
 
 def test_a_run_that_diverges_is_recorded_up_to_its_last_finite_state(shape: Experiment, tmp_path: Path) -> None:
