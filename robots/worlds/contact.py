@@ -69,7 +69,9 @@ class Contact:
         self.wheel_speeds = np.zeros((n, 2))
         self._row_of = {body.id: row for row, body in enumerate(list(self.space.bodies)[:n])}
         self._state, self._arbiters = batch.Buffer(), batch.Buffer()
-        self._command = np.zeros((2 * n, 3))
+        # The batch also visits the static body of walls and obstacles, last. Without a row of its own, which stays 0,
+        # it would be given as its velocity whatever lies in memory behind this array.
+        self._command = np.zeros((2 * n + 1, 3))
         self._command_buffer = batch.Buffer()
         self._command_buffer.set_float_buf(self._command)
         self._observe()
@@ -78,7 +80,7 @@ class Contact:
         wheels = controller(self.points, self.headings) @ self._to_wheels
         self.wheel_speeds = self._drive.saturate(wheels, self._saturation)
         twist = self.wheel_speeds @ self._to_twist
-        drive = self._command[self._n :]
+        drive = self._command[self._n : -1]
         dt = period / self._substeps
         # The partner moves along the chord of the arc that the wheels command over a whole period. The solver moves
         # bodies before it gives them new velocities, so that arc begins one substep from now.

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robots import GTERNAL, ROBOTARIUM_FLOOR, Arena, DifferentialDrive, NearIdentityDiffeomorphism
+from robots.obstacles import disc
 from robots.worlds.contact import Contact
 
 NID = NearIdentityDiffeomorphism(0.025)
@@ -139,6 +140,14 @@ def test_walls_stop_a_chassis_at_the_arenas_sides(theta: float) -> None:
     assert np.abs(corners[:, 0]).max() < 1.6 + 2e-3
     assert np.abs(corners[:, 1]).max() < 1.0 + 2e-3
     assert (1.6 - np.abs(corners[:, 0])).min() < 2e-3 or (1.0 - np.abs(corners[:, 1])).min() < 2e-3
+
+
+def test_walls_and_obstacles_never_move() -> None:
+    arena = dataclasses.replace(ROBOTARIUM_FLOOR, obstacles=(disc((0.5, 0.0), 0.1),))
+    contact = world([(0.0, 0.0, 0.0)], arena=arena)
+    drive(contact, (0.2, 0.0), periods=200)
+    assert contact.space.static_body.velocity == (0.0, 0.0)
+    assert contact.space.static_body.angular_velocity == 0.0
 
 
 @pytest.mark.parametrize("arena", [None, dataclasses.replace(ROBOTARIUM_FLOOR, walls=False)])
