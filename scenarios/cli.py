@@ -44,7 +44,7 @@ def cli(ctx: click.Context) -> None:
 @cli.command("list")
 def list_command() -> None:
     """What scenarios there are."""
-    from scenarios.report import print_library
+    from scenarios.catalogue import print_library
 
     print_library(_console())
 
@@ -135,7 +135,7 @@ def laws(starts: int, markdown: Path | None) -> None:
 def keys(markdown: Path | None) -> None:
     """Every key of a scenario file: what it may be, its default, its meaning."""
     from scenarios import keys as reference
-    from scenarios.report import print_keys
+    from scenarios.catalogue import print_keys
 
     if markdown is None:
         print_keys(_console())

@@ -1,4 +1,4 @@
-"""What the command line prints: tables of scenarios, predictions and results."""
+"""What the command line prints of experiments: predictions, results, and laws side by side."""
 
 from __future__ import annotations
 
@@ -11,21 +11,9 @@ from rich.markup import escape
 from formation import agents, collision_margins, decay_rates, end_similarity
 from scenarios.experiment import Experiment
 from scenarios.forecast import NEAR, PhaseForecast, forecast
-from scenarios.keys import keys
 from scenarios.laws import COMPASS_BIAS_DEG, Share
-from scenarios.load import library, load
 from scenarios.terminal import new_table
 from scenarios.tracking import predicted_late_rates
-
-
-def print_library(console: Console) -> None:
-    """The scenarios that come with the project."""
-    table = new_table("scenario", "agents", "time (s)", "plant", "title")
-    for name in library():
-        s = load(name).scenario
-        seconds = s.duration_s or sum(phase.duration_s for phase in s.phases)
-        table.add_row(name, str(len(s.agents)), f"{seconds:g}", s.plant.name, escape(s.title))
-    console.print(table)
 
 
 def print_experiment(console: Console, experiment: Experiment, seed: int) -> None:
@@ -133,14 +121,6 @@ def _print_forecast(console: Console, experiment: Experiment, predicted: list[Ph
         )
     console.print("\n[bold]Predicted end of each phase, c R(theta) p* + xi, for ideal single integrators[/bold]")
     console.print(table)
-
-
-def print_keys(console: Console) -> None:
-    """The reference of the scenario file."""
-    table = new_table("key", "kind", "default", "meaning")
-    for key in keys():
-        table.add_row(key.name, key.kind, key.default, key.meaning)
-    console.print(table, markup=False)
 
 
 def print_laws(console: Console, shares: list[Share]) -> None:

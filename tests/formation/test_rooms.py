@@ -34,3 +34,9 @@ def test_importing_loads_no_heavy_package(module: str) -> None:
     code = f"import sys, {module}; print(*({heavy} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == []
+
+
+def test_listing_scenarios_loads_no_numpy() -> None:
+    code = "import sys, scenarios.catalogue; print('numpy' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"
