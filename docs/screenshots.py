@@ -65,8 +65,8 @@ def main() -> None:
                     picture = folder / "picture.png"
                     client.save_screenshot(str(picture))
                     keep(picture, f"recording-{name}-{moment}.png")
-            if name == "shape":
-                browse(path, folder, environment)
+            if name != "pair":
+                browse(name, path, folder, environment)
 
 
 def recordings(folder: Path) -> dict[str, Path]:
@@ -93,12 +93,12 @@ def viewer(path: Path, environment: dict[str, str]) -> Iterator[int]:
         yield port
 
 
-def browse(path: Path, folder: Path, environment: dict[str, str]) -> None:
+def browse(run: str, path: Path, folder: Path, environment: dict[str, str]) -> None:
     """Take the web viewer's pictures at the start, in the middle and at the end, by clicks on its time bar."""
     port, web = free_port(), free_port()
     command = [executable(), str(path), "--serve-web", "--bind", LOOPBACK]
     command += ["--port", str(port), "--web-viewer-port", str(web)]
-    with running(command, environment, web), Browser(folder / "browser", environment) as browser:
+    with running(command, environment, web), Browser(folder / f"browser-{run}", environment) as browser:
         browser.call(
             "Page.navigate", url=f"http://{LOOPBACK}:{web}/?url=rerun%2Bhttp%3A%2F%2F{LOOPBACK}%3A{port}%2Fproxy"
         )
@@ -110,7 +110,7 @@ def browse(path: Path, folder: Path, environment: dict[str, str]) -> None:
                 time.sleep(PAINTED)
             picture = folder / "web.png"
             picture.write_bytes(base64.b64decode(browser.call("Page.captureScreenshot")["data"]))
-            keep(picture, f"recording-web-{name}.png")
+            keep(picture, f"recording-web-{run}-{name}.png")
 
 
 class Browser:
