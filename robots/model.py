@@ -93,7 +93,7 @@ GTERNAL = RobotModel(
         centre_offset=COLLISION_CENTRE,
         mass=0.2,  # kg, assumed: only ratios of forces to mass enter the motion
         tyre_friction=0.8,  # rubber on a hard floor, assumed
-        body_friction=0.0,  # smooth shells, assumed; docs/world.md shows how much hangs on it
+        body_friction=0.0,  # smooth shells, assumed: with 0.3 robots that follow the law literally jam, README
     ),
 )
 """The Robotarium's robot."""
