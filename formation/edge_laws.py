@@ -6,7 +6,7 @@ to the leader (Section 3.3). Summed over all edges they are the families of laws
 against.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 import numpy as np
@@ -48,7 +48,7 @@ def bearing(e: Complex, delta: Complex) -> Complex:
     return b_star - b * (np.conj(b) * b_star).real
 
 
-EDGE_LAWS = MappingProxyType(
+EDGE_LAWS: Mapping[str, EdgeLaw] = MappingProxyType(
     {"stationary": stationary, "displacement": displacement, "distance": distance, "bearing": bearing}
 )
 """The laws by the name that scenario files use."""

@@ -106,8 +106,12 @@ def judge(
     wheel_speeds: Real,
     floor: Arena = ROBOTARIUM_FLOOR,
     drive: DifferentialDrive = GTERNAL.drive,
+    near: Separation | None = None,
 ) -> Verdict:
-    """The verdict on a run: times (T,), poses (T, n, 3) of the axle centres and wheel speeds (T, n, 2)."""
+    """The verdict on a run: times (T,), poses (T, n, 3) of the axle centres and wheel speeds (T, n, 2).
+
+    ``near`` is the separation of the collision centres where the caller has it already: it is the dear part.
+    """
     violations = []
     outside = ~floor.contains(poses[..., :2])
     if (at := np.flatnonzero(outside.any(axis=1))).size:
@@ -116,7 +120,8 @@ def judge(
         beyond = max(floor.x[0] - x, x - floor.x[1], floor.y[0] - y, y - floor.y[1])
         violations.append(Violation("floor", len(at), float(t[k]), (robot,), (x, y), beyond))
     centres = collision_centres(poses)
-    near = separation(centres)
+    if near is None:
+        near = separation(centres)
     if (at := np.flatnonzero(near.distance < COLLISION_DISTANCE)).size:
         k = at[0]
         i, j = near.pairs[k].tolist()

@@ -73,14 +73,15 @@ def measure(experiment: Experiment, trajectory: Trajectory) -> Metrics:
     error_sum = np.abs(errors).sum(axis=-1)
     axle_sum = np.abs(axle_errors).sum(axis=-1)
     tracking = track(experiment, trajectory)
+    near = separation(collision_centres(trajectory.poses))
     return Metrics(
         angle_errors=errors,
         error_sum=error_sum,
         axle_error_sum=axle_sum,
         settling_time=settling_time(trajectory.t, error_sum, experiment.goal),
-        separation=separation(collision_centres(trajectory.poses)),
+        separation=near,
         verdict=judge(
-            trajectory.t, trajectory.poses, trajectory.wheel_speeds, experiment.arena, experiment.robot.drive
+            trajectory.t, trajectory.poses, trajectory.wheel_speeds, experiment.arena, experiment.robot.drive, near
         ),
         tracking=tracking,
         late_rates=measured_late_rates(experiment, trajectory),

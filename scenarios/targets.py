@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from formation import AngleSet, SensingGraph, TargetFormation, agents, random_target, target_from_angles, wrap
 from scenarios.errors import InputError, located
-from scenarios.schema import AgentTable, Scenario
+from scenarios.schema import AgentTable, RandomFormationTable, Scenario
 
 Real = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ def build_target(path: str, scenario: Scenario) -> tuple[TargetFormation, AngleS
         InputError: a graph that breaks Assumption 1, a degenerate target, angles that fit no shape or another one.
     """
     if scenario.random_formation is not None:
-        target = _random(path, scenario)
+        target = _random(path, scenario.random_formation)
     else:
         with located(path, "agents"):
             graph = _graph(scenario.agents)
@@ -56,10 +56,7 @@ def _graph(given: tuple[AgentTable, ...]) -> SensingGraph:
     return SensingGraph.from_edges(len(given), agents.rows(edges))
 
 
-def _random(path: str, scenario: Scenario) -> TargetFormation:
-    table = scenario.random_formation
-    if table is None:
-        raise InputError(f"{path}: random_formation: missing")
+def _random(path: str, table: RandomFormationTable) -> TargetFormation:
     with located(path, "random_formation"):
         return random_target(
             table.agents,

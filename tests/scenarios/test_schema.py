@@ -5,8 +5,20 @@ from typing import Any, get_args
 import pytest
 from pydantic import BaseModel, ValidationError
 
+from robots import GTERNAL, ROBOTARIUM_FLOOR
+from robots.model import COLLISION_CENTRE, CONTROL_PERIOD
+from robots.safety.barrier import FilterSettings
 from scenarios.load import library, load
-from scenarios.schema import ArenaTable, GoalTable, PhaseTable, PlantTable, RobotTable, Scenario, SensorTable
+from scenarios.schema import (
+    ArenaTable,
+    GoalTable,
+    PhaseTable,
+    PlantTable,
+    RobotTable,
+    SafetyTable,
+    Scenario,
+    SensorTable,
+)
 
 
 def tables(model: type[BaseModel]) -> set[type[BaseModel]]:
@@ -69,3 +81,16 @@ def test_a_scenario_written_as_json_and_read_again_is_the_same(name: str) -> Non
     """The run folder keeps scenarios this way."""
     scenario = load(name).scenario
     assert Scenario.model_validate_json(scenario.model_dump_json()) == scenario
+
+
+def test_defaults_are_the_constants_of_the_machines() -> None:
+    """The schema repeats them so that listing scenarios loads no numpy; here they are held together."""
+    robot, arena, safety, settings = RobotTable(), ArenaTable(), SafetyTable(), FilterSettings()
+    assert PlantTable().control_period_s == CONTROL_PERIOD
+    assert robot.projection_distance_m == COLLISION_CENTRE == GTERNAL.chassis.centre_offset
+    assert robot.wheel_speed_limit_rad_s == GTERNAL.drive.wheel_speed_limit
+    assert (robot.tyre_friction, robot.body_friction) == (GTERNAL.chassis.tyre_friction, GTERNAL.chassis.body_friction)
+    assert (arena.x_m, arena.y_m) == (ROBOTARIUM_FLOOR.x, ROBOTARIUM_FLOOR.y)
+    assert (safety.safe_distance_m, safety.sensing_range_m) == (settings.safe_distance, settings.sensing_range)
+    assert (safety.clearance_m, safety.gain_per_s) == (settings.clearance, settings.gain)
+    assert (safety.turn_rad, safety.stuck_time_s) == (settings.turn, settings.stuck_time)
