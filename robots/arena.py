@@ -51,6 +51,11 @@ class Arena:
         (x0, x1), (y0, y1) = self.x, self.y
         return np.array([[0.0, 1.0, y0], [-1.0, 0.0, -x1], [0.0, -1.0, -y1], [1.0, 0.0, x0]])
 
+    @property
+    def wall_planes(self) -> NDArray[np.float64]:
+        """(4, 3) the half-planes of the sides that are walls, or (0, 3) where they are not."""
+        return self.half_planes if self.walls else np.empty((0, 3))
+
 
 ROBOTARIUM_FLOOR = Arena(x=(-1.6, 1.6), y=(-1.0, 1.0))
 """The Robotarium's floor (``rps`` 2.1)."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -18,7 +18,7 @@ from formation import (
     VelocityEstimator,
     agents,
 )
-from robots import GTERNAL, Arena, Chassis, DifferentialDrive, NearIdentityDiffeomorphism, RobotModel
+from robots import GTERNAL, Arena, NearIdentityDiffeomorphism, RobotModel
 from robots import RelativePositionSensor as Sensor
 from robots.obstacles import Obstacle
 from robots.safety import FilterSettings
@@ -188,17 +188,10 @@ def _sensor(scenario: Scenario, graph: SensingGraph) -> Sensor:
 
 
 def _robot(scenario: Scenario) -> RobotModel:
-    drive, chassis, table = GTERNAL.drive, GTERNAL.chassis, scenario.robot
+    table = scenario.robot
     return RobotModel(
-        drive=DifferentialDrive(drive.wheel_radius, drive.base_length, table.wheel_speed_limit_rad_s),
-        chassis=Chassis(
-            length=chassis.length,
-            width=chassis.width,
-            centre_offset=chassis.centre_offset,
-            mass=chassis.mass,
-            tyre_friction=table.tyre_friction,
-            body_friction=table.body_friction,
-        ),
+        drive=replace(GTERNAL.drive, wheel_speed_limit=table.wheel_speed_limit_rad_s),
+        chassis=replace(GTERNAL.chassis, tyre_friction=table.tyre_friction, body_friction=table.body_friction),
     )
 
 

@@ -31,7 +31,7 @@ class CentralisedFilter(JointFilter):
     ) -> None:
         super().__init__(shape)
         self._settings = settings
-        self._walls = arena.half_planes if arena is not None and arena.walls else np.empty((0, 3))
+        self._walls = np.empty((0, 3)) if arena is None else arena.wall_planes
         self._obstacles = () if arena is None else arena.obstacles
         self._codes = things(self._n, len(self._walls), len(self._obstacles))
         self._limit, self._weight = drive.speed_limit * (1.0 - WHEEL_MARGIN), turn_weight(drive, nid)

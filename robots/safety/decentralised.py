@@ -66,7 +66,7 @@ class DecentralisedFilter:
             speed_limit=drive.speed_limit * (1.0 - WHEEL_MARGIN),
             turn_weight=turn_weight(drive, nid),
         )
-        self._walls = arena.half_planes if arena is not None and arena.walls else np.empty((0, 3))
+        self._walls = np.empty((0, 3)) if arena is None else arena.wall_planes
         self._obstacles = pack(() if arena is None else arena.obstacles)
         batch = (int(np.prod(shape[:-1])), shape[-1])
         self._silence = np.empty((*batch, 0, 2))
