@@ -1,9 +1,10 @@
-"""What a recording costs beside the run itself: encoding and writing it, and once per process the import of rerun."""
+"""What a recording costs: encoding and writing it, and by how much it makes the whole command longer."""
 
 import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,9 @@ from scenarios.trajectory import Trajectory
 Recorded = Callable[..., Trajectory]
 
 STEPS, ROBOTS = 3600, 200
+
+PAIRS = 9
+"""Of runs with and without a recording."""
 
 
 def record(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, folder: Path) -> None:
@@ -58,5 +62,18 @@ def test_two_hundred_robots_are_recorded_within_3_s(
     target(f"recording {ROBOTS} robots x {STEPS} steps", benchmark.stats.stats.median, 3.0, "s")
 
 
-def test_a_process_that_imports_rerun(benchmark: Any) -> None:
-    benchmark.pedantic(subprocess.run, ([sys.executable, "-c", "import rerun"],), {"check": True}, rounds=3)
+def test_a_recording_lengthens_a_run_by_at_most_300_ms_or_a_tenth(benchmark: Any, target: Any, tmp_path: Path) -> None:
+    """The command from start to end, with and without a recording by turns, so that both meet the same noise."""
+    formation = [sys.executable, "-m", "scenarios", "run", "maneuver", "--out", str(tmp_path / "run")]
+
+    def seconds(*options: str) -> float:
+        start = perf_counter()
+        subprocess.run([*formation, *options], check=True, stdout=subprocess.DEVNULL)
+        return perf_counter() - start
+
+    seconds()  # compiles the filter where that has not been done
+    pairs = np.array([(seconds(), seconds("--no-recording")) for _ in range(PAIRS)])
+    benchmark(lambda: None)
+    with_it, without = np.median(pairs, axis=0)
+    added = np.median(pairs[:, 0] - pairs[:, 1])
+    target(f"a recording's share of `run maneuver`, {with_it:.2f} s", added, max(0.3, 0.1 * without), "s")

@@ -2,6 +2,7 @@
 
 import io
 import json
+import multiprocessing
 import shutil
 import subprocess
 import sys
@@ -9,6 +10,7 @@ from collections import defaultdict
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -23,9 +25,9 @@ from robots.testbed import COLLISION_DISTANCE
 from scenarios import run_folder
 from scenarios.errors import InputError
 from scenarios.experiment import Experiment, open_experiment
-from scenarios.metrics import measure
+from scenarios.metrics import Metrics, measure
 from scenarios.recording import file, plots, scene, timeline, viewer
-from scenarios.recording.encode import encode, encode_pair, encode_run
+from scenarios.recording.encode import encode, encode_pair
 from scenarios.recording.file import damage, write
 from scenarios.recording.piece import rows, whole
 from scenarios.recording.recorder import TIMELINE, Recorder, open_stream
@@ -342,6 +344,24 @@ def test_a_full_disk_costs_the_recording_and_nothing_else(tmp_path: Path, monkey
     assert run_folder.RECORDING not in names
 
 
+def test_a_killed_encoder_costs_the_recording_and_nothing_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    measured = measure
+
+    def kill(*arguments: Any) -> Metrics:
+        (encoder,) = multiprocessing.active_children()
+        encoder.kill()
+        encoder.join()
+        return measured(*arguments)
+
+    monkeypatch.setattr("scenarios.run.measure", kill)
+    console = Console(record=True, file=io.StringIO(), width=400)
+    run_to_folder(open_experiment("shape", (), 1.0), 0, tmp_path / "run", console)
+    assert "recording: its process was killed" in console.export_text()
+    assert multiprocessing.active_children() == []
+    rebuilt = recording_of(tmp_path / "run", tmp_path, Console(quiet=True))
+    assert damage(rebuilt) is None
+
+
 def test_writing_leaves_no_scratch_file_when_the_place_is_taken(tmp_path: Path) -> None:
     (tmp_path / "recording.rrd").mkdir()
     with pytest.raises(OSError):
@@ -363,9 +383,11 @@ def test_two_runs_share_a_recording_side_by_side(run: Path, tmp_path: Path) -> N
         assert str(found[f"/A/{entity}"]).splitlines()[0] == str(found[f"/B/{entity}"]).splitlines()[0]
 
 
-def test_a_rebuilt_recording_equals_the_first(run: Path, tmp_path: Path) -> None:
-    path = tmp_path / "again.rrd"
-    write(path, encode_run(run_folder.read(run)))
+def test_a_recording_made_from_the_run_folder_equals_the_one_made_of_the_states_in_memory(
+    run: Path, tmp_path: Path
+) -> None:
+    read_back = run_folder.read(run)
+    path, *_ = encoded(read_back.experiment, tmp_path / "again.rrd", read_back.result["seed"])
     assert str(read(path)) == str(read(run / run_folder.RECORDING))
 
 
