@@ -33,7 +33,7 @@ def run_all(work: Callable[[Task], Result], tasks: Sequence[Task], workers: int)
         return
     # Not forked: a copy of a process with threads (progress bars have one) may wait for a lock that nobody holds.
     context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(min(workers, len(tasks)), context, begin_worker)
+    pool = ProcessPoolExecutor(min(workers, len(tasks)), context, _begin_worker)
     try:
         yield from pool.map(work, tasks)
     except BrokenProcessPool as error:
@@ -49,8 +49,7 @@ def available_workers() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def begin_worker() -> None:
-    """What every worker process does first, so that it ends with its parent and with nothing else."""
+def _begin_worker() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # an interrupt ends the parent, which ends the workers
     threading.Thread(target=_end_with_parent, daemon=True).start()
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from concurrent.futures import Future
-from concurrent.futures.process import BrokenProcessPool
 from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,7 +12,8 @@ from rich.markup import escape
 from scenarios import run_folder
 from scenarios.experiment import Experiment
 from scenarios.metrics import Metrics, measure
-from scenarios.recording import aside, file, viewer
+from scenarios.recording import file, viewer
+from scenarios.recording.aside import Encoder
 from scenarios.report import print_result
 from scenarios.result import result
 from scenarios.simulation import simulate
@@ -51,7 +50,7 @@ def run_to_folder(
         InputError: the folder cannot be written; known before the run starts.
     """
     folder = out or run_folder.default_path(experiment.file.name, experiment.plant, seed)
-    with run_folder.writing(folder) as scratch, aside.encoder() if recorded else nullcontext() as encode:
+    with run_folder.writing(folder) as scratch, Encoder() if recorded else nullcontext() as encoder:
         view = None if live is None else _open_view(experiment, seed, live, console)
         with progress_bar(console, experiment.file.name) as advance:
             trajectory = simulate(experiment, seed, advance, view)
@@ -60,10 +59,11 @@ def run_to_folder(
         trajectory.save(scratch / run_folder.TRAJECTORY, metrics.angle_errors)
         run_folder.write_json(scratch / run_folder.SCENARIO, experiment.scenario.model_dump(mode="json"))
         run_folder.write_json(scratch / run_folder.RESULT, summary)
-        recording = None if encode is None else encode(scratch)
+        if encoder is not None:
+            encoder.begin(scratch)
         _draw_overview(experiment, trajectory, metrics, scratch)
-        if recording is not None:
-            _record(scratch / run_folder.RECORDING, recording, console)
+        if encoder is not None:
+            _record(scratch / run_folder.RECORDING, encoder, console)
     if view is not None and live is not None and not (view.finish(summary) and viewer.listening(live.port)):
         console.print("live: the viewer went away; the run folder has everything")
     print_result(console, summary)
@@ -77,14 +77,12 @@ def _draw_overview(experiment: Experiment, trajectory: Trajectory, metrics: Metr
     plot(experiment, trajectory, metrics, folder, [OVERVIEW], ["png"])  # `formation plot` draws the rest, and for print
 
 
-def _record(path: Path, recording: Future[bytes], console: Console) -> None:
+def _record(path: Path, encoder: Encoder, console: Console) -> None:
     """Write the recording. A run is whole without it: replay rebuilds it."""
     try:
-        file.write(path, recording.result())
+        file.write(path, encoder.recording())
     except OSError as error:
         console.print(f"recording: cannot be written: {error.strerror}; replay will rebuild it")
-    except (BrokenProcessPool, MemoryError):
-        console.print("recording: its process was killed, for want of memory?; replay will rebuild it")
 
 
 def _open_view(experiment: Experiment, seed: int, live: Live, console: Console) -> LiveView | None:

@@ -4,6 +4,7 @@ import ast
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 ROOT = Path(__file__).parents[1]
@@ -39,3 +40,16 @@ def test_every_library_scenario_named_in_the_readme_exists_and_the_other_way_rou
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     named = set(re.findall(r"^\| `([\w-]+)` \|", readme, flags=re.MULTILINE))
     assert {path.stem for path in (ROOT / "scenarios" / "library").glob("*.toml")} <= named
+
+
+def test_the_python_of_the_documents_runs_as_it_stands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "python.md").read_text(encoding="utf-8"), re.DOTALL)
+    assert blocks
+    names: dict[str, object] = {}
+    for block in blocks:
+        exec(block, names)
+    assert names["verdict"].accepted
+    assert np.linalg.norm(names["world"].points - names["places"], axis=1).max() < 0.01
+    assert np.abs(names["errors"]).sum(axis=1).max() < 0.01
+    assert names["result"]["outcome"] == "converged"

@@ -1,51 +1,67 @@
 """The recording of a run, encoded in a process beside the one that runs.
 
-Loading rerun takes about as long as two minutes of six robots. A second process does that while the first one
-simulates, and encodes while the first one draws.
+Loading rerun takes about as long as simulating a minute of six robots. A second process does that while the first one
+simulates, and encodes while the first one draws. It is told the run folder on its input, answers with the recording on
+its output, and ends when its input does: with the run, however that ends.
 """
 
 from __future__ import annotations
 
-import multiprocessing
-from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
-from functools import partial
+import errno
+import os
+import subprocess
+import sys
+from contextlib import suppress
 from pathlib import Path
+from types import TracebackType
+from typing import IO, cast
 
 from scenarios import run_folder
-from scenarios.pool import begin_worker
-
-Encode = Callable[[Path], "Future[bytes]"]
-"""Takes a folder with the files of a run, gives the content of its recording, later."""
 
 
-@contextmanager
-def encoder() -> Iterator[Encode]:
-    """Start the process; it gets ready by itself and ends with the block."""
-    pool = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), begin_worker)
-    try:
-        pool.submit(_get_ready)
-        yield partial(_later, pool)
-    finally:
-        pool.shutdown(cancel_futures=True)
+class Encoder:
+    """The process; a context manager that leaves none behind."""
+
+    def __enter__(self) -> Encoder:
+        # -P: a folder named `scenarios` where the user works is not this package. A group of its own: an interrupt at
+        # the terminal is for the run, which ends this process.
+        command = [sys.executable, "-P", "-m", __name__]
+        self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, process_group=0)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self._process.kill()
+        with self._process:  # closes the pipes and waits
+            pass
+
+    def begin(self, folder: Path) -> None:
+        """Encode the run in ``folder``, which has all files but the recording."""
+        stdin = cast(IO[bytes], self._process.stdin)
+        with suppress(BrokenPipeError):  # that the process is gone is found out when the recording is asked for
+            stdin.write(os.fsencode(folder.resolve()))
+            stdin.close()
+
+    def recording(self) -> bytes:
+        """The content of the recording, when it is ready.
+
+        Raises:
+            ChildProcessError: the process was killed or failed.
+        """
+        content = cast(IO[bytes], self._process.stdout).read()
+        if code := self._process.wait():
+            raise ChildProcessError(errno.ECHILD, f"the process that encodes it ended with code {code}")
+        return content
 
 
-def _later(pool: ProcessPoolExecutor, folder: Path) -> Future[bytes]:
-    try:
-        return pool.submit(_encode, folder)
-    except BrokenProcessPool as error:  # killed while it got ready
-        failed: Future[bytes] = Future()
-        failed.set_exception(error)
-        return failed
-
-
-def _get_ready() -> None:
-    import scenarios.recording.encode  # noqa: F401 (loads rerun)
-
-
-def _encode(folder: Path) -> bytes:
+def main() -> None:
+    """Get ready, read the name of a run folder, write its recording."""
     from scenarios.recording.encode import encode_run
 
-    return encode_run(run_folder.read(folder))
+    if folder := sys.stdin.buffer.read():
+        sys.stdout.buffer.write(encode_run(run_folder.read(Path(os.fsdecode(folder)))))
+
+
+if __name__ == "__main__":
+    main()

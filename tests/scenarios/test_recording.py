@@ -2,7 +2,6 @@
 
 import io
 import json
-import multiprocessing
 import shutil
 import subprocess
 import sys
@@ -20,13 +19,15 @@ from hypothesis import strategies as st
 from rerun.chunk import RrdReader
 from rich.console import Console
 
+import scenarios.run
 from formation import agents
 from robots.testbed import COLLISION_DISTANCE
 from scenarios import run_folder
 from scenarios.errors import InputError
 from scenarios.experiment import Experiment, open_experiment
-from scenarios.metrics import Metrics, measure
+from scenarios.metrics import measure
 from scenarios.recording import file, plots, scene, timeline, viewer
+from scenarios.recording.aside import Encoder
 from scenarios.recording.encode import encode, encode_pair
 from scenarios.recording.file import damage, write
 from scenarios.recording.piece import rows, whole
@@ -344,22 +345,47 @@ def test_a_full_disk_costs_the_recording_and_nothing_else(tmp_path: Path, monkey
     assert run_folder.RECORDING not in names
 
 
-def test_a_killed_encoder_costs_the_recording_and_nothing_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    measured = measure
+@pytest.mark.parametrize("moment", ["measure", "_draw_overview"])
+def test_a_killed_encoder_costs_the_recording_and_nothing_else(
+    moment: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    started: list[Encoder] = []
+    enter, proceed = Encoder.__enter__, getattr(scenarios.run, moment)
 
-    def kill(*arguments: Any) -> Metrics:
-        (encoder,) = multiprocessing.active_children()
-        encoder.kill()
-        encoder.join()
-        return measured(*arguments)
+    def remembered(encoder: Encoder) -> Encoder:
+        started.append(enter(encoder))
+        return encoder
 
-    monkeypatch.setattr("scenarios.run.measure", kill)
+    def kill(*arguments: Any) -> Any:
+        started[0]._process.kill()
+        started[0]._process.wait()
+        return proceed(*arguments)
+
+    monkeypatch.setattr(Encoder, "__enter__", remembered)
+    monkeypatch.setattr(scenarios.run, moment, kill)
     console = Console(record=True, file=io.StringIO(), width=400)
     run_to_folder(open_experiment("shape", (), 1.0), 0, tmp_path / "run", console)
-    assert "recording: its process was killed" in console.export_text()
-    assert multiprocessing.active_children() == []
-    rebuilt = recording_of(tmp_path / "run", tmp_path, Console(quiet=True))
-    assert damage(rebuilt) is None
+    assert "recording: cannot be written: the process that encodes it ended with code -9" in console.export_text()
+    assert damage(recording_of(tmp_path / "run", tmp_path, Console(quiet=True))) is None
+
+
+def test_an_encoder_ends_with_the_run_that_started_it() -> None:
+    with pytest.raises(KeyboardInterrupt), Encoder() as encoder:
+        raise KeyboardInterrupt
+    assert encoder._process.returncode is not None
+    code = "import os, signal; from scenarios.recording.aside import Encoder; Encoder().__enter__(); os._exit(9)"
+    orphaned = subprocess.run([sys.executable, "-c", code], capture_output=True, timeout=60)
+    assert orphaned.returncode == 9  # and returned: nobody holds its output open
+
+
+def test_a_folder_of_the_users_named_like_a_package_is_not_imported(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "scenarios").mkdir()
+    (tmp_path / "scenarios" / "__init__.py").write_text("raise RuntimeError", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    run_to_folder(open_experiment("shape", (), 0.1), 0, tmp_path / "run", Console(quiet=True))
+    assert damage(tmp_path / "run" / run_folder.RECORDING) is None
 
 
 def test_writing_leaves_no_scratch_file_when_the_place_is_taken(tmp_path: Path) -> None:
