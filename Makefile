@@ -40,7 +40,7 @@ check: $(STAMP) ## run every scenario again and compare it with its baseline
 bench: $(STAMP) ## benchmarks, with their targets
 	$(BIN)/pytest tests/benchmarks --benchmark-only --benchmark-disable-gc
 
-figures: $(STAMP) ## draw the figures of the documents
+figures: $(STAMP) ## draw the figures of the documents, the film included
 	$(BIN)/formation run shape --out runs/figures/shape
 	$(BIN)/formation run maneuver --out runs/figures/maneuver
 	$(BIN)/formation plot runs/figures/maneuver --format png
@@ -49,6 +49,9 @@ figures: $(STAMP) ## draw the figures of the documents
 	cp runs/figures/maneuver/figure-motion.png docs/images/figure-maneuver.png
 	cp runs/figures/maneuver/figure-graph.png runs/figures/maneuver/figure-decay.png \
 		runs/figures/maneuver/figure-separation.png docs/images
+	$(BIN)/formation run maneuver-testbed --out runs/figures/maneuver-testbed
+	$(BIN)/formation animate runs/figures/maneuver-testbed --speed 12 --fps 12
+	cp runs/figures/maneuver-testbed/animation.gif docs/images/maneuver-testbed.gif
 
 evidence: $(STAMP) ## the Monte Carlo evidence over all seeds, printed (about 15 minutes)
 	EVIDENCE_SEEDS=500 $(BIN)/pytest tests/evidence -q -n auto --dist load -rP
