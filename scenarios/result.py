@@ -10,6 +10,7 @@ import numpy as np
 
 from formation import agents
 from robots.testbed import Violation
+from robots.worlds import NOTHING
 from scenarios.experiment import Experiment
 from scenarios.metrics import Metrics
 from scenarios.safety_result import safety_result
@@ -90,16 +91,17 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
 
 def _contacts(trajectory: Trajectory) -> dict[str, Any]:
     """In how many control periods any agent touched another one, a wall or an obstacle, who, and who first."""
-    periods = np.flatnonzero(trajectory.contact.any(axis=1))
+    touches = trajectory.contact != NOTHING
+    periods = np.flatnonzero(touches.any(axis=1))
     if not periods.size:
         return {"periods": 0, "agents": [], "first": None}
     first = periods[0]
     return {
         "periods": len(periods),
-        "agents": agents.numbers(np.flatnonzero(trajectory.contact.any(axis=0))).tolist(),
+        "agents": agents.numbers(np.flatnonzero(touches.any(axis=0))).tolist(),
         "first": {
             "time_s": float(trajectory.t[first]),
-            "agents": agents.numbers(np.flatnonzero(trajectory.contact[first])).tolist(),
+            "agents": agents.numbers(np.flatnonzero(touches[first])).tolist(),
         },
     }
 

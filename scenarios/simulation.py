@@ -8,6 +8,7 @@ import numpy as np
 
 from formation import Phase
 from robots import make_world
+from robots.worlds import NOTHING
 from scenarios.controller import Controller
 from scenarios.experiment import Experiment
 from scenarios.guard import SafetyRecord
@@ -57,7 +58,7 @@ def simulate(
     points = np.empty((total + 1, *world.points.shape))
     wheel_speeds = np.empty_like(points)
     phase_index = np.zeros(total + 1, dtype=np.intp)
-    contact = np.zeros(points.shape[:-1], dtype=bool)
+    contact = np.full(points.shape[:-1], NOTHING)
     active = np.empty((total + 1, *controller.active.shape), dtype=bool)
     safety = SafetyRecord(total + 1, (*batch, experiment.n), controller.guard)
     t[0], poses[0], points[0], wheel_speeds[0] = 0.0, world.poses, world.points, world.wheel_speeds

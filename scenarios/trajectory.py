@@ -26,7 +26,7 @@ class Trajectory:
         wheel_speeds: (T, ..., n, 2) left and right wheel speeds during the period that ends at t, rad/s; NaN for a
             plant without wheels.
         phase: (T,) index of the phase that the period belongs to.
-        contact: (T, ..., n) which agents touched another one, a wall or an obstacle during the period.
+        contact: (T, ..., n) what each agent touched during the period; see :class:`robots.worlds.World`.
         active: (T, ..., n) which agents follow the law; all but those that wait in sequential activation.
         intervention: (T, ..., n) how far the safety filter moved the law's velocity during the period, m/s.
         relaxation: (T, ..., n) by how much the rows of an infeasible problem were lowered, m/s.
@@ -39,7 +39,7 @@ class Trajectory:
     points: Real
     wheel_speeds: Real
     phase: NDArray[np.intp]
-    contact: NDArray[np.bool_]
+    contact: NDArray[np.intp]
     active: NDArray[np.bool_]
     intervention: Real
     relaxation: Real

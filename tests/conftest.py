@@ -8,6 +8,7 @@ import hypothesis
 import numpy as np
 import pytest
 
+from robots.worlds import NOTHING
 from scenarios.experiment import Experiment, build, open_experiment
 from scenarios.load import LIBRARY, ScenarioFile, validate
 from scenarios.trajectory import Trajectory
@@ -64,7 +65,7 @@ def recorded() -> Callable[..., Trajectory]:
         nothing = {
             "wheel_speeds": np.zeros((*robots, 2)),
             "phase": np.zeros(len(t), dtype=np.intp),
-            "contact": np.zeros(robots, dtype=bool),
+            "contact": np.full(robots, NOTHING),
             "active": np.ones(robots, dtype=bool),
             "intervention": np.zeros(robots),
             "relaxation": np.zeros(robots),

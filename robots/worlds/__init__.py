@@ -12,6 +12,7 @@ from robots.nid import NearIdentityDiffeomorphism
 from robots.worlds.kinematic import Saturated as Saturated
 from robots.worlds.kinematic import SingleIntegrator as SingleIntegrator
 from robots.worlds.kinematic import Unicycle as Unicycle
+from robots.worlds.protocol import NOTHING as NOTHING
 from robots.worlds.protocol import Controller as Controller
 from robots.worlds.protocol import Real
 from robots.worlds.protocol import World as World

@@ -24,7 +24,7 @@ from robots.drive import Saturation
 from robots.model import RobotModel
 from robots.nid import NearIdentityDiffeomorphism
 from robots.worlds.kinematic import arc_chord
-from robots.worlds.protocol import Controller, Real
+from robots.worlds.protocol import NOTHING, Controller, Real
 
 SUBSTEPS = 4
 """Solver steps per control period; keeps the deepest overlap of two chassis near 2 mm."""
@@ -106,10 +106,13 @@ class Contact:
         self.points = axle + self._l * self.headings
         self._arbiters.clear()
         batch.get_space_arbiters(self.space, _BODIES, self._arbiters)
-        self.contacts = np.zeros(self._n, dtype=bool)
-        for body in memoryview(self._arbiters.int_buf()).cast("P"):
-            if (row := self._row_of.get(body)) is not None:  # walls and obstacles belong to no robot
-                self.contacts[row] = True
+        self.contacts = np.full(self._n, NOTHING)
+        bodies = memoryview(self._arbiters.int_buf()).cast("P")
+        for pair in zip(bodies[::2], bodies[1::2], strict=True):
+            rows = [self._row_of.get(body, self._n) for body in pair]
+            for row, other in (rows, reversed(rows)):
+                if row < self._n and (self.contacts[row] == NOTHING or other < self.contacts[row]):
+                    self.contacts[row] = other
 
 
 def _space(poses: Real, robot: RobotModel, arena: Arena | None) -> pymunk.Space:

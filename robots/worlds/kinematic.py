@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from robots.drive import DifferentialDrive, Saturation
 from robots.nid import NearIdentityDiffeomorphism
-from robots.worlds.protocol import Controller, Real
+from robots.worlds.protocol import NOTHING, Controller, Real
 
 Complex = NDArray[np.complex128]
 
@@ -26,7 +26,7 @@ class SingleIntegrator:
         self.poses = np.concatenate([self.points, theta[..., None]], axis=-1)
         self.headings = _unit(theta)
         self.wheel_speeds = np.full_like(self.points, np.nan)
-        self.contacts = np.zeros(self.points.shape[:-1], dtype=bool)
+        self.contacts = np.full(self.points.shape[:-1], NOTHING)
 
     def step(self, controller: Controller, period: float) -> None:
         h, p, frame = period, self.points, self.headings.view(np.complex128)
@@ -55,7 +55,7 @@ class Unicycle:
         self._to_twist = drive.to_twist.T
         self._drive = drive
         self.wheel_speeds = np.zeros_like(self.poses[..., :2])
-        self.contacts = np.zeros(self.poses.shape[:-1], dtype=bool)
+        self.contacts = np.full(self.poses.shape[:-1], NOTHING)
         self._observe()
 
     def step(self, controller: Controller, period: float) -> None:

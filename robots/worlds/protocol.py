@@ -12,6 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 Real = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+NOTHING = -1
+"""What a robot touches that touches nothing."""
 
 Controller = Callable[[Real, Real], Real]
 """Maps projected points (..., n, 2), metres, and unit heading vectors (..., n, 2) to body-frame velocities (..., n, 2),
@@ -25,7 +29,8 @@ class World(Protocol):
         poses: (..., n, 3) x, y, theta of the axle centres, metres and radians. theta is continuous, not wrapped.
         points: (..., n, 2) projected points, metres.
         headings: (..., n, 2) unit vectors of the headings.
-        contacts: (..., n) which robots touched a robot, a wall or an obstacle in the last period.
+        contacts: (..., n) row of the robot that each robot touched in the last period, the smallest where it touched
+            several; n for a wall or an obstacle alone, :data:`NOTHING` for nothing.
         wheel_speeds: (..., n, 2) left and right wheel speeds of the last period, rad/s; NaN where there are no wheels.
     """
 
@@ -33,7 +38,7 @@ class World(Protocol):
     points: Real
     headings: Real
     wheel_speeds: Real
-    contacts: NDArray[np.bool_]
+    contacts: Index
 
     def step(self, controller: Controller, period: float) -> None:
         """Advance the state by one control period, seconds."""

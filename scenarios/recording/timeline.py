@@ -7,6 +7,7 @@ import rerun as rr
 
 from formation import agents
 from robots.testbed import COLLISION_DISTANCE
+from robots.worlds import NOTHING
 from scenarios.experiment import Experiment
 from scenarios.recording import style
 from scenarios.recording.piece import Index, Piece, Real
@@ -98,13 +99,21 @@ def separation(recorder: Recorder, piece: Piece) -> None:
 
 
 def contacts(recorder: Recorder, piece: Piece) -> None:
-    """An event for each agent that begins to touch another one, a wall or an obstacle."""
-    touches = piece.trajectory.contact
-    for row in range(piece.experiment.n):
-        at = piece.changes(touches[:, row])
-        begins = piece.t[at[touches[at, row]]]
-        texts = [f"{agents.name(row)} touches something"] * len(begins)
-        _events(recorder, "contacts", begins, texts, rr.TextLogLevel.WARN)
+    """An event for each two agents that begin to touch, and for each that begins to touch a wall or an obstacle."""
+    touched, n = piece.trajectory.contact, piece.experiment.n
+    begin: dict[tuple[int, int, int], None] = {}  # row, and the two that meet there: each of them tells of it
+    for agent in range(n):
+        for row in piece.changes(touched[:, agent]).tolist():
+            if (other := int(touched[row, agent])) != NOTHING:
+                begin[row, min(agent, other), max(agent, other)] = None
+    at = sorted(begin)
+    texts = [
+        f"{agents.name(one)} touches a wall or an obstacle"
+        if other == n
+        else f"agents {agents.number(one)} and {agents.number(other)} touch"
+        for _, one, other in at
+    ]
+    _events(recorder, "contacts", piece.t[[row for row, *_ in at]], texts, rr.TextLogLevel.WARN)
 
 
 def floor(recorder: Recorder, piece: Piece) -> None:

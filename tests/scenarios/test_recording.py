@@ -22,6 +22,7 @@ from rich.console import Console
 import scenarios.run
 from formation import agents
 from robots.testbed import COLLISION_DISTANCE
+from robots.worlds import NOTHING
 from scenarios import run_folder
 from scenarios.errors import InputError
 from scenarios.experiment import Experiment, open_experiment
@@ -224,11 +225,22 @@ def test_states_change_exactly_where_the_limit_is_crossed(run: Path, columns: Co
     assert len(columns[f"/{timeline.EVENTS}/separation"]["text"][1]) == np.count_nonzero(close[1:] & ~close[:-1])
 
 
-def test_every_agent_that_begins_to_touch_something_is_an_event(run: Path, columns: Columns) -> None:
-    touches = run_folder.read(run).trajectory.contact
-    begins = np.count_nonzero(touches[1:] & ~touches[:-1])
-    assert begins > 0
-    assert len(columns[f"/{timeline.EVENTS}/contacts"]["text"][1]) == begins
+def test_every_two_agents_that_begin_to_touch_are_one_event(run: Path, columns: Columns) -> None:
+    touched = run_folder.read(run).trajectory.contact
+    expected = set()
+    for row, agent in np.argwhere((touched[1:] != touched[:-1]) & (touched[1:] != NOTHING)).tolist():
+        one, other = sorted((agent, int(touched[row + 1, agent])))
+        expected.add((row + 1, f"agents {one + 1} and {other + 1} touch"))
+    assert expected
+    assert [text for (text,) in columns[f"/{timeline.EVENTS}/contacts"]["text"][1]] == [t for _, t in sorted(expected)]
+
+
+def test_who_touches_a_wall_is_an_event(tmp_path: Path) -> None:
+    experiment = open_experiment("shape", ("arena={x_m=[-1.0, 0.5], walls=true}", "safety.filter=none"), 10.0)
+    path, trajectory, _ = encoded(experiment, tmp_path / "run.rrd")
+    (agent, *_) = np.flatnonzero((trajectory.contact == experiment.n).any(axis=0))
+    texts = [text for (text,) in read(path)[f"/{timeline.EVENTS}/contacts"]["text"][1]]
+    assert f"{agents.name(agent)} touches a wall or an obstacle" in texts
 
 
 def test_a_run_that_diverges_is_recorded_up_to_its_last_finite_state(shape: Experiment, tmp_path: Path) -> None:
