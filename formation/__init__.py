@@ -18,6 +18,7 @@ from formation.edge_laws import EDGE_LAWS as EDGE_LAWS
 from formation.estimator import VelocityEstimator as VelocityEstimator
 from formation.from_angles import target_from_angles as target_from_angles
 from formation.graph import SensingGraph as SensingGraph
+from formation.law import FormationLaw as FormationLaw
 from formation.maneuver import Phase as Phase
 from formation.maneuver import pair_ends as pair_ends
 from formation.plane import rotation as rotation

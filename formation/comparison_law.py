@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from formation import agents
 from formation.edge_laws import COMPASS_FREE, EDGE_LAWS
 from formation.plane import Real, as_complex, as_vectors
 from formation.target import TargetFormation
@@ -40,8 +41,7 @@ class ComparisonLaw:
         self._edge_law = EDGE_LAWS[family]
         self._observer = observer
         self._desired = p[observer] - p[observed]
-        self._of_agent = np.zeros((len(observer), target.graph.n))
-        self._of_agent[np.arange(len(observer)), observer] = 1.0
+        self._n = target.graph.n
 
     def __call__(self, relative: Real, compass: Real | None = None, delta: Real | None = None) -> Real:
         """Velocities (..., n, 2), m/s, from relative positions (..., 2n - 3, 2); arguments as for the angle law.
@@ -53,4 +53,9 @@ class ComparisonLaw:
             if compass is None:
                 raise ValueError("compass is missing: the law needs it")
             desired = desired * as_complex(compass)[..., self._observer]
-        return as_vectors(self._edge_law(-as_complex(relative), desired) @ self._of_agent)
+        v = self._edge_law(-as_complex(relative), desired)
+        u = np.zeros((*v.shape[:-1], self._n), dtype=np.complex128)
+        u[..., agents.FIRST_FOLLOWER] = v[..., 0]
+        pairs = v[..., 1:].reshape(*v.shape[:-1], -1, 2)
+        np.add(pairs[..., 0], pairs[..., 1], out=u[..., agents.FIRST_ORDINARY :])
+        return as_vectors(u)
