@@ -132,6 +132,29 @@ def laws(starts: int, markdown: Path | None) -> None:
 
 
 @cli.command()
+@click.argument("scenario")
+@click.option("--starts", default=100, show_default=True, type=click.IntRange(min=0), help="Random starts; 0 for none.")
+@click.option("--set", "changes", multiple=True, metavar="KEY=VALUE", help="Change a key of the scenario.")
+@click.option("--markdown", type=click.Path(path_type=Path, dir_okay=False), help="Write the table to this file too.")
+def audit(scenario: str, starts: int, changes: tuple[str, ...], markdown: Path | None) -> None:
+    """Find out what the law of SCENARIO (a name or a file) is like, your own above all.
+
+    Whether it is local and free of frames, what it fixes, whether it is stable, how often it reaches the goal.
+    """
+    from scenarios import audit as auditing
+    from scenarios.terminal import progress_bar
+
+    console = _console()
+    with progress_bar(console, "audit") as advance:
+        experiment, findings = auditing.audit_scenario(scenario, changes, starts, advance)
+    auditing.print_audit(console, experiment, findings)
+    if markdown is not None:
+        write_text(markdown, auditing.markdown(experiment, findings, scenario, changes, starts), "--markdown")
+    if not auditing.passed(findings):
+        raise SystemExit(MISSED)
+
+
+@cli.command()
 @click.option("--markdown", type=click.Path(path_type=Path, dir_okay=False), help="Write a Markdown table instead.")
 def keys(markdown: Path | None) -> None:
     """Every key of a scenario file: what it may be, its default, its meaning."""

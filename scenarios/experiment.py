@@ -12,6 +12,7 @@ from formation import (
     AngleLaw,
     AngleSet,
     ComparisonLaw,
+    FormationLaw,
     Phase,
     SensingGraph,
     TargetFormation,
@@ -24,6 +25,7 @@ from robots.obstacles import Obstacle
 from robots.safety import FilterSettings
 from scenarios.errors import InputError, located
 from scenarios.load import ScenarioFile, load
+from scenarios.own_law import NotLoaded, make_own_law
 from scenarios.schema import Scenario
 from scenarios.starts import Starts, build_starts
 from scenarios.targets import build_target
@@ -55,7 +57,7 @@ class Experiment:
     target_angles: Real
     starts: Starts
     phases: tuple[Phase, ...]
-    law: AngleLaw | ComparisonLaw
+    law: FormationLaw
     estimator: VelocityEstimator | None
     sensor: Sensor
     nid: NearIdentityDiffeomorphism
@@ -95,9 +97,19 @@ class Experiment:
 
     @cached_property
     def first_follower(self) -> str:
-        """The edge law by which agent 2 acts, a name of :data:`formation.EDGE_LAWS`."""
+        """The edge law by which agent 2 acts, a name of :data:`formation.EDGE_LAWS`.
+
+        Of an own law, the one that keeps or reaches the commanded displacement: what a reference for it is drawn from.
+        """
         law = self.scenario.law
+        if law.name == "own":
+            return "displacement"
         return law.first_follower if law.name == "angle" else law.name
+
+    @property
+    def predicted(self) -> bool:
+        """Whether the theory says where the run ends; it says nothing of an own law."""
+        return self.scenario.law.name != "own"
 
     def initial_points(self, seed: int) -> Real:
         """(n, 2) initial projected points of the run with that seed, metres."""
@@ -113,8 +125,13 @@ def open_experiment(scenario: str, changes: tuple[str, ...] = (), duration: floa
     return build(load(scenario, changes), duration)
 
 
-def build(file: ScenarioFile, duration: float | None = None) -> Experiment:
-    """The experiment of a scenario file; ``duration`` (seconds) replaces the scenario's own.
+def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True) -> Experiment:
+    """The experiment of a scenario file.
+
+    Args:
+        file: the scenario.
+        duration: seconds; replaces the scenario's own.
+        to_run: False where a run is only looked at, and then the file of an own law is not executed.
 
     Raises:
         InputError: anything in the scenario that cannot be used, with file and field.
@@ -136,7 +153,7 @@ def build(file: ScenarioFile, duration: float | None = None) -> Experiment:
         target_angles=target_angles,
         starts=build_starts(path, scenario, target, arena),
         phases=phases,
-        law=_law(scenario, target),
+        law=_law(file, target, phases, to_run),
         estimator=_estimator(path, scenario, target.graph),
         sensor=_sensor(scenario, target.graph),
         nid=nid,
@@ -168,10 +185,15 @@ def _filter_settings(path: str, scenario: Scenario) -> FilterSettings:
         )
 
 
-def _law(scenario: Scenario, target: TargetFormation) -> AngleLaw | ComparisonLaw:
-    if scenario.law.name == "angle":
-        return AngleLaw(target, scenario.law.first_follower)
-    return ComparisonLaw(target, scenario.law.name)
+def _law(file: ScenarioFile, target: TargetFormation, phases: tuple[Phase, ...], to_run: bool) -> FormationLaw:
+    table = file.scenario.law
+    if table.name == "angle":
+        return AngleLaw(target, table.first_follower)
+    if table.name != "own":
+        return ComparisonLaw(target, table.name)
+    if not to_run or file.law is None or table.factory is None:
+        return NotLoaded()
+    return make_own_law(file.path, file.law, table.factory, table.parameters, target, phases[0].delta)
 
 
 def _estimator(path: str, scenario: Scenario, graph: SensingGraph) -> VelocityEstimator | None:
@@ -226,6 +248,8 @@ def _phases(path: str, scenario: Scenario, target: TargetFormation, duration: fl
 def _displacements(path: str, scenario: Scenario, target: TargetFormation) -> list[tuple[float, float] | None]:
     """delta_12 of each phase: the scenario's, or that of p* for a comparison law."""
     given = [phase.displacement_m for phase in scenario.phases] or [None]
+    if scenario.law.name == "own":
+        return given
     if scenario.law.name != "angle":
         if any(delta is not None for delta in given):
             raise InputError(

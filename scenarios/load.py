@@ -12,10 +12,15 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
+from scenarios import law_file
 from scenarios.errors import InputError, did_you_mean
-from scenarios.schema import Scenario
+from scenarios.law_file import LawFile
+from scenarios.schema import LawTable, Scenario
 
 LIBRARY = Path(__file__).parent / "library"
+
+OWN_LAW_KEYS = ("file", "factory", "parameters")
+"""Keys of the table ``law`` that only an own law has."""
 
 LONGEST_VALUE = 80
 """Characters of a refused value that a message repeats."""
@@ -30,18 +35,29 @@ class ScenarioFile:
         path: as given, for messages.
         description: the comment at the file's head, without its hash signs.
         scenario: the validated content, changes included.
+        law: the file of an own law; None for the others.
     """
 
     name: str
     path: str
     description: str
     scenario: Scenario
+    law: LawFile | None = None
 
     @property
     def sha256(self) -> str:
-        """Digest of the validated content: equal for files that mean the same, different after any change."""
-        content = json.dumps(self.scenario.model_dump(mode="json"), sort_keys=True)
-        return hashlib.sha256(content.encode()).hexdigest()
+        """Digest of the validated content: equal for files that mean the same, different after any change.
+
+        Of an own law its source counts, wherever its file is.
+        """
+        data = self.scenario.model_dump(mode="json")
+        law = data["law"]
+        if self.law is not None:
+            law["file"] = self.law.sha256
+        else:
+            for key in OWN_LAW_KEYS:
+                del law[key]
+        return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
 
 
 def library() -> list[str]:
@@ -70,7 +86,7 @@ def load(scenario: str, changes: Sequence[str] = ()) -> ScenarioFile:
         changes: ``key=value`` texts; dotted keys, values as in TOML, ``agents.3.start=[0, 1]`` by agent number.
 
     Raises:
-        InputError: no such file, not TOML, or content that the schema refuses.
+        InputError: no such file, not TOML, content that the schema refuses, or no such law file.
     """
     path = find(scenario)
     try:
@@ -87,7 +103,9 @@ def load(scenario: str, changes: Sequence[str] = ()) -> ScenarioFile:
         raise InputError(f"{scenario}: not valid TOML: {error}") from error
     for change in changes:
         _apply(data, change)
-    return ScenarioFile(path.stem, scenario, head_comment(text), validate(data, scenario))
+    validated = validate(data, scenario)
+    law = None if validated.law.file is None else law_file.read(scenario, path.parent, validated.law.file)
+    return ScenarioFile(path.stem, scenario, head_comment(text), validated, law)
 
 
 def head_comment(text: str) -> str:
@@ -129,7 +147,23 @@ def validate(data: Mapping[str, Any], file: str) -> Scenario:
     if bool(scenario.phases) == (scenario.duration_s is not None):
         both = "both" if scenario.phases else "neither"
         raise InputError(f"{file}: duration_s: expected either duration_s or phases, got {both}")
+    _check_own_law(scenario.law, file)
     return scenario
+
+
+def _check_own_law(law: LawTable, file: str) -> None:
+    """An own law has a file and a factory and decides for agent 2; the others have none of its keys."""
+    none = LawTable()
+    if law.name != "own":
+        for key in OWN_LAW_KEYS:
+            if getattr(law, key) != getattr(none, key):
+                raise InputError(f'{file}: law.{key}: only for law.name = "own", got "{law.name}"')
+        return
+    for key in ("file", "factory"):
+        if not getattr(law, key):
+            raise InputError(f'{file}: law.{key}: missing, the law "own" needs it')
+    if law.first_follower != none.first_follower:
+        raise InputError(f"{file}: law.first_follower: an own law says itself what agent 2 does, expected none")
 
 
 def _apply(data: dict[str, Any], change: str) -> None:

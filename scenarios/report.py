@@ -15,6 +15,9 @@ from scenarios.laws import COMPASS_BIAS_DEG, Share
 from scenarios.terminal import new_table
 from scenarios.tracking import predicted_late_rates
 
+NO_PREDICTION = "no closed-form prediction for an own law: `formation audit` measures what it does"
+"""What stands where the theory speaks of the other laws."""
+
 
 def print_experiment(console: Console, experiment: Experiment, seed: int) -> None:
     """Graph, angles, assumptions, predicted rates and end configurations."""
@@ -25,7 +28,10 @@ def print_experiment(console: Console, experiment: Experiment, seed: int) -> Non
     predicted = forecast(experiment, start)
     _print_assumptions(console, experiment, start)
     _print_agents(console, experiment, start, predicted[-1].end)
-    _print_forecast(console, experiment, predicted)
+    if experiment.predicted:
+        _print_forecast(console, experiment, predicted)
+    else:
+        console.print(f"\n{NO_PREDICTION}")
     table = new_table("angle", "target (deg)")
     for name, value in zip(experiment.angles.names, np.degrees(experiment.target_angles), strict=True):
         table.add_row(name, f"{value:.4f}")
@@ -55,7 +61,8 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
     graph, target = experiment.graph, experiment.target
     rates, late = decay_rates(target), predicted_late_rates(experiment)
     margins = collision_margins(target, start, end)
-    still = len(experiment.phases) == 1 and not any(experiment.phases[0].velocity)  # the premise of Lemma 3
+    at_rest = len(experiment.phases) == 1 and not any(experiment.phases[0].velocity)
+    still = at_rest and experiment.predicted  # the premise of Lemma 3
     table = new_table(
         "agent",
         "senses",
@@ -84,7 +91,7 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
             str(graph.depth[row]),
             *cells[:3],
             _point(start[row]),
-            _point(end[row]),
+            _point(end[row]) if experiment.predicted else "-",
             cells[3],
         )
     console.print(table)
@@ -198,22 +205,25 @@ def _print_phases(console: Console, result: dict[str, Any]) -> None:
 def _print_ends(console: Console, result: dict[str, Any]) -> None:
     """Predicted beside measured: the end of the last phase and the late decay rates."""
     last, rates = result["phases"][-1], result["late_rates_per_s"]
+    nowhere = [None] * len(last["measured_m"])
     table = new_table(
         "agent", "predicted end (m)", "measured (m)", "distance (m)", "predicted late rate (1/s)", "measured (1/s)"
     )
     for row, (predicted, measured, distance) in enumerate(
-        zip(last["predicted_m"], last["measured_m"], last["distance_m"], strict=True)
+        zip(last["predicted_m"] or nowhere, last["measured_m"], last["distance_m"] or nowhere, strict=True)
     ):
         follower = row - agents.FIRST_ORDINARY
         late = [rates[kind][follower] if follower >= 0 and rates[kind] else None for kind in ("predicted", "measured")]
         table.add_row(
             str(agents.number(row)),
-            _point(predicted),
+            "-" if predicted is None else _point(predicted),
             _point(measured),
             _value(distance, ".1e"),
             *(_value(rate, ".3f") for rate in late),
         )
     console.print(table)
+    if last["predicted_m"] is None:
+        console.print(NO_PREDICTION)
     console.print()
 
 

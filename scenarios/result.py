@@ -12,9 +12,9 @@ from formation import agents
 from robots.testbed import Violation
 from robots.worlds import NOTHING
 from scenarios.experiment import Experiment
-from scenarios.metrics import Metrics
+from scenarios.metrics import Metrics, PhaseEnd
 from scenarios.safety_result import safety_result
-from scenarios.tracking import predicted_late_rates
+from scenarios.tracking import Tracking, predicted_late_rates
 from scenarios.trajectory import Trajectory
 
 SCHEMA_VERSION = 1
@@ -76,16 +76,26 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
                 "axle_angle_errors_rad": [_number(e) for e in end.axle_angle_errors],
                 "angle_error_sum_rad": _number(np.abs(end.angle_errors).sum()),
                 "axle_angle_error_sum_rad": _number(np.abs(end.axle_angle_errors).sum()),
-                "scale_error": _number(metrics.tracking.scale[end.row]),
-                "orientation_error_rad": _number(metrics.tracking.orientation[end.row]),
-                "translation_error_m": _number(metrics.tracking.translation[end.row]),
-                "predicted_m": end.predicted.tolist(),
+                **_against_prediction(experiment, metrics.tracking, end),
                 "measured_m": trajectory.points[end.row].tolist(),
-                "distance_m": [_number(d) for d in end.distances],
             }
             for end in metrics.phases
         ],
         **safety_result(experiment, trajectory),
+    }
+
+
+def _against_prediction(experiment: Experiment, tracking: Tracking, end: PhaseEnd) -> dict[str, Any]:
+    """The end of a phase against where the theory sends it; null where the law has no theory."""
+    if not experiment.predicted:
+        keys = ("scale_error", "orientation_error_rad", "translation_error_m", "predicted_m", "distance_m")
+        return dict.fromkeys(keys)
+    return {
+        "scale_error": _number(tracking.scale[end.row]),
+        "orientation_error_rad": _number(tracking.orientation[end.row]),
+        "translation_error_m": _number(tracking.translation[end.row]),
+        "predicted_m": end.predicted.tolist(),
+        "distance_m": [_number(d) for d in end.distances],
     }
 
 

@@ -57,7 +57,7 @@ def run_to_folder(
         metrics = measure(experiment, trajectory)
         summary = result(experiment, seed, trajectory, metrics)
         trajectory.save(scratch / run_folder.TRAJECTORY, metrics.angle_errors)
-        run_folder.write_json(scratch / run_folder.SCENARIO, experiment.scenario.model_dump(mode="json"))
+        run_folder.write_scenario(scratch, experiment.file)
         run_folder.write_json(scratch / run_folder.RESULT, summary)
         if encoder is not None:
             encoder.begin(scratch)

@@ -16,6 +16,7 @@ from scenarios.errors import InputError
 
 if TYPE_CHECKING:
     from scenarios.experiment import Experiment
+    from scenarios.load import ScenarioFile
     from scenarios.trajectory import Trajectory
 
 RESULT = "result.json"
@@ -23,6 +24,8 @@ TRAJECTORY = "trajectory.npz"
 RECORDING = "recording.rrd"
 SCENARIO = "scenario.json"
 """The validated scenario, with all changes of the command line: what replay and plots need besides the states."""
+LAW = "law.py"
+"""The own law of the run, as it was when the run was made."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,6 +108,7 @@ def read(folder: Path) -> Run:
         InputError: it is not a run folder, or one of its files is missing, damaged or of another run.
     """
     # The command line imports this module before it knows its command; only reading needs the whole experiment.
+    from scenarios import law_file
     from scenarios.experiment import build
     from scenarios.load import ScenarioFile, validate
     from scenarios.trajectory import Trajectory
@@ -118,8 +122,9 @@ def read(folder: Path) -> Run:
         if not isinstance(result.get(key), kind):
             raise InputError(f"{folder / RESULT}: {key}: expected {kind.__name__}, got {result.get(key)!r}")
     scenario = validate(_read_json(scenario_path), str(scenario_path))
-    file = ScenarioFile(result["scenario"], str(scenario_path), "", scenario)
-    experiment = build(file, result["planned_duration_s"])
+    law = None if scenario.law.file is None else law_file.read(str(scenario_path), folder, scenario.law.file)
+    file = ScenarioFile(result["scenario"], str(scenario_path), "", scenario, law)
+    experiment = build(file, result["planned_duration_s"], to_run=False)
     trajectory = Trajectory.read(folder / TRAJECTORY)
     rows, n = trajectory.t.size, experiment.n
     expected = {
@@ -135,6 +140,15 @@ def read(folder: Path) -> Run:
         if found != shape:
             raise InputError(f"{folder / TRAJECTORY}: {key}: expected the shape {shape}, got {found}")
     return Run(folder, experiment, trajectory, result)
+
+
+def write_scenario(folder: Path, file: ScenarioFile) -> None:
+    """Write what a run was made from, so that the folder needs nothing outside it."""
+    content = file.scenario.model_dump(mode="json")
+    if file.law is not None:
+        content["law"]["file"] = LAW
+        (folder / LAW).write_bytes(file.law.source)
+    write_json(folder / SCENARIO, content)
 
 
 def _read_json(path: Path) -> dict[str, Any]:

@@ -67,14 +67,20 @@ class PhaseTable(Table):
 class LawTable(Table):
     """The formation law."""
 
-    name: Literal["angle", "displacement", "bearing", "distance"] = "angle"
-    """The paper's law, or one of the families that it weighs itself against."""
+    name: Literal["angle", "displacement", "bearing", "distance", "own"] = "angle"
+    """The paper's law, one of the families that it weighs itself against, or an own law, whose file is executed."""
     first_follower: Literal["stationary", "displacement", "distance", "bearing"] = "stationary"
     """What the first follower of the angle law does with the phases' displacement."""
     activation: Literal["simultaneous", "sequential"] = "simultaneous"
     """Whether each follower waits until its neighbours have settled (Lemma 3)."""
     settled_m: Positive = 0.005
     """Distance from its place below which a follower counts as settled, for sequential activation."""
+    file: str | None = None
+    """Python file of an own law; its path starts where the scenario file is."""
+    factory: str | None = None
+    """Function or class in that file, called once as `factory(target, **parameters)`; docs/own-law.md says more."""
+    parameters: dict[str, Number] = Field(default_factory=dict)
+    """What the factory is called with, by name."""
 
 
 class CommunicationTable(Table):

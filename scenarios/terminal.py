@@ -15,6 +15,7 @@ from rich.table import Table
 LEFT = frozenset(
     ("scenario", "title", "angle", "agent", "senses", "phase", "plant", "law", "measures", "frame", "fixes")
     + ("key", "kind", "default", "meaning", "changes", "quantity", "result", "replay")
+    + ("check", "verdict", "remark")
 )
 """Columns of text; all others hold numbers and are aligned right."""
 

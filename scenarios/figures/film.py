@@ -61,14 +61,13 @@ class Film:
         shown = limits(experiment.arena, trajectory.poses)
         self.floor = panel(self._figure, LEFT, BOTTOM + ERRORS + BETWEEN, floor_width, floor_height)
         prepare(self.floor, experiment.arena, shown)
-        self.floor.set_title(
-            f"{experiment.file.name}, {experiment.plant}, {speed:g} x;  + predicted places", loc="left", pad=4.0
-        )
+        places = ";  + predicted places" if experiment.predicted else ""
+        self.floor.set_title(f"{experiment.file.name}, {experiment.plant}, {speed:g} x{places}", loc="left", pad=4.0)
         self._errors = panel(self._figure, LEFT, BOTTOM, WIDTH - LEFT - RIGHT, ERRORS)
         draw_error_sum(self._errors, experiment, trajectory, metrics)
         self._errors.set_xlabel("time (s)")
         mark_phases(self._errors, experiment, names=True)
-        self._predicted = reference(experiment, trajectory)
+        self._predicted = reference(experiment, trajectory) if experiment.predicted else None
         self._make_movers()
 
     def frames(self) -> Iterator[Pixels]:
@@ -122,7 +121,8 @@ class Film:
         points, poses = self._trajectory.points[row], self._trajectory.poses[row]
         chassis = self._experiment.robot.chassis
         self._edges.set_segments(list(points[self._experiment.graph.formation_edges]))
-        self._ghosts.set_data(*self._predicted[row].T)
+        if self._predicted is not None:
+            self._ghosts.set_data(*self._predicted[row].T)
         if self._experiment.plant == "single_integrator":
             self._dots.set_data(*points.T)
         else:

@@ -61,8 +61,12 @@ def single(experiment: Experiment, points: Real, live: bool = False) -> rrb.Blue
         rrb.Horizontal(states([""], length(experiment)), notes(experiment, "")),
         row_shares=[1.85, 1.0],
     )
-    wheels = experiment.plant != "single_integrator"
-    shown = {entity: name for entity, name in FIGURES.items() if wheels or entity != plots.WHEELS}
+    absent = set()
+    if experiment.plant == "single_integrator":
+        absent.add(plots.WHEELS)
+    if not experiment.predicted:
+        absent.add(plots.DISTANCE)
+    shown = {entity: name for entity, name in FIGURES.items() if entity not in absent}
     right = rrb.Grid(*figures([""], shown, length(experiment), spans(experiment, points)), grid_columns=2)
     return _layout(rrb.Horizontal(left, right, column_shares=[1.35, 1.0]), "following" if live else "playing")
 

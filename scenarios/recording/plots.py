@@ -84,7 +84,7 @@ def interventions(recorder: Recorder, piece: Piece) -> None:
 def tracking(recorder: Recorder, piece: Piece) -> None:
     """Scale, orientation (degrees) and centroid (metres) of the formation and of the moving end of Theorem 2.
 
-    Beside them, log10 of each agent's distance (metres) from its place in that end.
+    Beside them, log10 of each agent's distance (metres) from its place in that end. Of an own law, what is measured.
     """
     experiment, points = piece.experiment, piece.trajectory.points
     wanted = moving_ends(experiment, piece.start, piece.t, piece.trajectory.phase)
@@ -96,8 +96,11 @@ def tracking(recorder: Recorder, piece: Piece) -> None:
         (ORIENTATION, np.degrees(angle_0 + wrap(angle - angle_0)), np.degrees(angle_0)),
         (CENTROID, centroid, centroid_0),
     ):
-        _series(recorder, f"{entity}/ideal", piece.t, predicted)
+        if experiment.predicted:
+            _series(recorder, f"{entity}/ideal", piece.t, predicted)
         _series(recorder, f"{entity}/measured", piece.t, measured)
+    if not experiment.predicted:
+        return
     distance = np.linalg.norm(points - wanted, axis=-1)
     _series(recorder, f"{DISTANCE}/value", piece.t, np.log10(np.maximum(distance, SMALLEST)))
 

@@ -145,7 +145,9 @@ def trails_style(recorder: Recorder, experiment: Experiment) -> None:
 
 
 def prediction(recorder: Recorder, piece: Piece) -> None:
-    """The end configuration that the theory predicts for the phase under way, as a ghost."""
+    """The end configuration that the theory predicts for the phase under way, as a ghost; none for an own law."""
+    if not piece.experiment.predicted:
+        return
     rows = piece.changes(piece.trajectory.phase)
     ends = predicted_ends(piece.experiment, piece.start)[piece.trajectory.phase[rows]]
     observer, observed = piece.experiment.graph.edges.T
