@@ -89,7 +89,7 @@ def linearise(velocity: Callable[[Real], Real], points: Real, step: float) -> Li
     Args:
         velocity: the closed loop, all positions and velocities in one frame.
         points: where.
-        step: h, metres; about a thousandth of the formation's size.
+        step: h, metres; far below every length of the law and of the formation.
     """
     here = velocity(points).ravel()
     slopes, jumps = zip(*(_differences(velocity, points, here, h) for h in (step, step / 2.0, step / 4.0)), strict=True)

@@ -113,7 +113,6 @@ def _measured(finding: Finding) -> str:
     value = finding.measured
     if value is None:
         return "-"
-    if finding.unit.startswith("of ") and not finding.unit.endswith("speed"):
-        return f"{value:g} {finding.unit}"
-    number = f"< {ROUNDING:g}" if abs(value) < ROUNDING else f"{value:.3g}"
+    rounded = abs(value) < ROUNDING and finding.unit != "%"
+    number = f"< {ROUNDING:g}" if rounded else f"{value:.3g}"
     return f"{number} {finding.unit}".strip()

@@ -248,6 +248,9 @@ def _phases(path: str, scenario: Scenario, target: TargetFormation, duration: fl
 def _displacements(path: str, scenario: Scenario, target: TargetFormation) -> list[tuple[float, float] | None]:
     """delta_12 of each phase: the scenario's, or that of p* for a comparison law."""
     given = [phase.displacement_m for phase in scenario.phases] or [None]
+    for number, delta in enumerate(given, start=1):
+        if delta is not None and not any(delta):
+            raise InputError(f"{path}: phases[{number}].displacement_m: agents 1 and 2 must not be sent to one place")
     if scenario.law.name == "own":
         return given
     if scenario.law.name != "angle":
@@ -264,6 +267,4 @@ def _displacements(path: str, scenario: Scenario, target: TargetFormation) -> li
     for number, delta in enumerate(given, start=1):
         if delta is None:
             raise InputError(f"{path}: phases[{number}].displacement_m: missing")
-        if not any(delta):
-            raise InputError(f"{path}: phases[{number}].displacement_m: agents 1 and 2 must not be sent to one place")
     return given

@@ -20,7 +20,7 @@ from scenarios.law_file import LawFile
 Real = NDArray[np.float64]
 
 SAME = 1e-9
-"""Relative difference of two velocities that are the same but for the order of additions."""
+"""Relative to the greatest speed: velocities that differ by less are the same but for the order of additions."""
 
 
 class OwnLaw:
@@ -90,7 +90,8 @@ class OwnLaw:
             together = self._ask(relative, compass, delta)
         except InputError:
             return False
-        return np.allclose(together, apart, rtol=SAME, atol=0.0, equal_nan=True)
+        tolerance = SAME * np.abs(np.nan_to_num(apart)).max()
+        return np.allclose(together, apart, rtol=0.0, atol=tolerance, equal_nan=True)
 
 
 class NotLoaded:
@@ -126,7 +127,8 @@ def make_own_law(
     module = file.execute()
     make = getattr(module, factory, None)
     if not callable(make):
-        known = did_you_mean(factory, _factories(module))
+        names = _factories(module)
+        known = did_you_mean(factory, names) if names else "it has none at all"
         raise InputError(f"{scenario}: law.factory: {file.path} has no function or class {factory!r}, {known}")
     _check_parameters(scenario, factory, make, parameters)
     try:

@@ -8,7 +8,8 @@ from formation import agents
 from formation.audit.subject import REST, SAME, Finding, Subject
 from formation.plane import Real
 
-RELATIVE = "of the greatest speed"
+RELATIVE = "relative"
+"""To the greatest speed."""
 
 
 def output(subject: Subject, rng: np.random.Generator) -> Finding:

@@ -24,8 +24,11 @@ SAME = 1e-9
 REST = 1e-9
 """1/s, times the formation's size: slower agents are at rest."""
 
-STEP = 1e-3
-"""Of the differences that give the closed loop's derivative, relative to the formation's size."""
+STEPS = (1e-3, 1e-4, 1e-5, 1e-6)
+"""Of the differences that give the closed loop's derivative, relative to the shortest sensing edge.
+
+The first that shows the law smooth is taken: a law may have a length of its own, far below the formation's.
+"""
 
 
 @dataclass(frozen=True)
@@ -119,4 +122,10 @@ class Subject:
     @cached_property
     def loop(self) -> Linearisation:
         """The closed loop at the target."""
-        return linearise(self, self.positions, STEP * self.size)
+        observer, observed = self.graph.edges.T
+        shortest = float(np.linalg.norm(self.positions[observed] - self.positions[observer], axis=1).min())
+        for step in STEPS:
+            loop = linearise(self, self.positions, step * shortest)
+            if loop.smooth:
+                break
+        return loop
