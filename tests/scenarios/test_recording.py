@@ -191,6 +191,17 @@ def test_the_ghost_is_the_predicted_end_of_each_phase(moving: Callable[[str], Ex
     np.testing.assert_array_equal(times, [0, 2_000_000_000])
 
 
+def test_an_own_law_has_no_ghost_and_its_scale_nothing_beside_it(tmp_path: Path) -> None:
+    """Nothing is predicted of it."""
+    path, *_ = encoded(open_experiment("own-law", ("plant.name=unicycle",), 1.0), tmp_path / "recording.rrd")
+    columns = read(path)
+    assert "scalars" in columns[f"/{plots.SCALE}/measured"]
+    for absent in (f"/{plots.SCALE}/ideal", f"/{plots.DISTANCE}/value"):
+        assert "scalars" not in columns.get(absent, {})
+    moving = [entity for entity in columns if entity.startswith(f"/{scene.PREDICTION}") and "strips" in columns[entity]]
+    assert moving == []
+
+
 def test_the_filter_is_recorded_where_there_is_one_and_only_there(columns: Columns, tmp_path: Path) -> None:
     path, trajectory, _ = encoded(open_experiment("shape", ("safety.filter=decentralised",), 5.0), tmp_path / "run.rrd")
     found = read(path)
