@@ -71,7 +71,9 @@ def mirror_image(subject: Subject, rng: np.random.Generator) -> Finding:
     mirrored = origin + as_vectors(np.conj(as_complex(p - origin) / axis) * axis)
     speed = float(subject.speed(mirrored).max())
     rests = speed <= REST * subject.size
-    return Finding("mirror image", None, speed, "m/s", "at rest too: runs may end there" if rests else "left")
+    return Finding(
+        "mirror image", None, speed, "m/s", "at rest too: runs may end there" if rests else "moves: no run ends there"
+    )
 
 
 def derivative(subject: Subject, rng: np.random.Generator) -> Finding:
