@@ -249,26 +249,38 @@ def check(
 @click.option("--seeds", required=True, metavar="A:B", help="Seeds A to B - 1, one run each.")
 @click.option("--plant", metavar="P", help="single_integrator, unicycle, saturated or pymunk.")
 @click.option("--set", "changes", multiple=True, metavar="KEY=VALUE", help="Change a key of the scenario.")
+@click.option("--vary", "varied", multiple=True, metavar="KEY=V1,V2,...", help="Run with each of these values.")
 @click.option("--workers", type=click.IntRange(min=1), help="Processes.  [default: one per processor]")
+@click.option("--scheduler", metavar="ADDRESS", help="A running dask scheduler's, tcp://host:port, in their place.")
 @click.option("--out", type=click.Path(path_type=Path), help="[default: runs/sweep-SCENARIO-PLANT-seedsA-B]")
 def sweep_command(
-    scenario: str, seeds: str, plant: str | None, changes: tuple[str, ...], workers: int | None, out: Path | None
+    scenario: str,
+    seeds: str,
+    plant: str | None,
+    changes: tuple[str, ...],
+    varied: tuple[str, ...],
+    workers: int | None,
+    scheduler: str | None,
+    out: Path | None,
 ) -> None:
     """Run SCENARIO (a name or a file) with many seeds: one row per run, and a summary.
 
-    Rows are kept as they come, also those of a sweep that is stopped. Exit code 0 whatever the runs gave.
+    Where --vary is given several times, every combination of the values is run with every seed. Rows are kept as they
+    come, also those of a sweep that is stopped. Exit code 0 whatever the runs gave.
     """
-    from scenarios.pool import available_workers
-    from scenarios.sweep import parse_seeds, sweep
+    from scenarios.pool import spread
+    from scenarios.sweep import open_study, parse_seeds, sweep
     from scenarios.sweep_table import print_sweep
     from scenarios.terminal import progress_bar
+    from scenarios.variations import parse_variations
 
     if plant is not None:
         changes = (*changes, f'plant.name="{plant}"')
-    console, given = _console(), parse_seeds(seeds)
-    with progress_bar(console, "sweep") as advance:
-        summary, folder = sweep(scenario, changes, given, out, workers or available_workers(), advance)
-    print_sweep(console, summary, folder)
+    console = _console()
+    study = open_study(scenario, changes, parse_variations(varied, changes), parse_seeds(seeds))
+    with spread(workers, scheduler) as run_all, progress_bar(console, "sweep") as advance:
+        summaries, folder = sweep(study, out, run_all, advance)
+    print_sweep(console, study, summaries, folder)
 
 
 @cli.command()

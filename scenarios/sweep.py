@@ -1,4 +1,4 @@
-"""Monte Carlo: one scenario, many seeds, one row per run, and what the rows say together."""
+"""Monte Carlo: one scenario or its variations, many seeds, one row per run, and what the rows say together."""
 
 from __future__ import annotations
 
@@ -7,16 +7,19 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from scenarios.errors import InputError
-from scenarios.experiment import Experiment, open_experiment
+from scenarios.experiment import Experiment, build, open_experiment
+from scenarios.load import ScenarioFile
 from scenarios.metrics import measure
-from scenarios.pool import run_all
+from scenarios.pool import Spread
 from scenarios.run_folder import write_json
 from scenarios.simulation import periods, simulate
 from scenarios.trajectory import Trajectory
+from scenarios.variations import Variation, combinations
 
 ROWS, PARTIAL, SUMMARY = "rows.csv", "rows.partial.csv", "summary.json"
 """Files of a sweep; the rows are partial until the last run is done."""
@@ -30,6 +33,9 @@ BATCH_STATES = 1_000_000
 MOST_BATCHED = 100
 """Runs in one batch; more are no faster and make progress coarse."""
 
+RUN_COLUMNS = 3
+"""The first columns of a row, which tell the run."""
+
 QUANTILES = (0.0, 0.05, 0.5, 0.95, 1.0)
 
 Z_95 = 1.959963984540054
@@ -38,7 +44,7 @@ Z_95 = 1.959963984540054
 
 @dataclass(frozen=True)
 class Row:
-    """One run; the columns of ``rows.csv``. Empty cells stand for what did not happen."""
+    """One run; the columns of ``rows.csv``, varied keys after the seed. Empty cells stand for what did not happen."""
 
     scenario: str
     plant: str
@@ -53,12 +59,64 @@ class Row:
 
 
 @dataclass(frozen=True)
+class Combination:
+    """One value of each varied key, and the scenario that this makes.
+
+    Attributes:
+        changes: ``key=value`` texts, one per varied key.
+        values: the values alone, as they were written.
+        file: the scenario with all changes: runs need no file.
+        batch_size: runs that are made together.
+    """
+
+    changes: tuple[str, ...]
+    values: tuple[str, ...]
+    file: ScenarioFile
+    batch_size: int
+
+
+@dataclass(frozen=True)
+class Study:
+    """What a sweep runs: every seed of every combination, a single combination where nothing is varied."""
+
+    changes: tuple[str, ...]
+    variations: tuple[Variation, ...]
+    combinations: tuple[Combination, ...]
+    seeds: range
+
+    @property
+    def runs(self) -> int:
+        """Their number."""
+        return len(self.combinations) * len(self.seeds)
+
+    @property
+    def default_folder(self) -> Path:
+        """Where the sweep goes when no folder is named."""
+        file, varied = self.combinations[0].file, [variation.key for variation in self.variations]
+        plant = [] if "plant.name" in varied else [file.scenario.plant.name]
+        parts = ["sweep", file.name, *plant, *varied, f"seeds{self.seeds[0]}-{self.seeds[-1]}"]
+        return Path("runs") / "-".join(parts)
+
+    def batches(self) -> list[Batch]:
+        """All runs, in the order of the combinations and of the seeds."""
+        return [
+            Batch(c, tuple(self.seeds[i : i + c.batch_size]))
+            for c in self.combinations
+            for i in range(0, len(self.seeds), c.batch_size)
+        ]
+
+
+@dataclass(frozen=True)
 class Batch:
     """Runs that are made together."""
 
-    source: str
-    changes: tuple[str, ...]
+    combination: Combination
     seeds: tuple[int, ...]
+
+    def __str__(self) -> str:
+        first, last = self.seeds[0], self.seeds[-1]
+        seeds = f"seed {first}" if first == last else f"seeds {first} to {last}"
+        return ", ".join([self.combination.file.name, *self.combination.changes, seeds])
 
 
 @dataclass(frozen=True)
@@ -112,54 +170,85 @@ def parse_seeds(text: str) -> range:
     return range(int(match[1]), int(match[2]))
 
 
-def sweep(
-    source: str,
-    changes: tuple[str, ...],
-    seeds: range,
-    out: Path | None,
-    workers: int,
-    on_progress: Callable[[int, int], None],
-) -> tuple[Summary, Path]:
-    """Run every seed and write one row per run, in the order of the seeds, each as soon as it is there.
+def open_study(source: str, changes: tuple[str, ...], variations: Sequence[Variation], seeds: range) -> Study:
+    """Everything that a sweep needs, proved usable before anything runs.
 
     Args:
         source: the scenario's library name or path.
         changes: ``key=value`` texts, as with ``--set``.
-        seeds: one run each.
+        variations: keys that take several values.
+        seeds: one run each, of every combination.
+
+    Raises:
+        InputError: the scenario cannot be used, with a combination of values at least.
+    """
+    found = []
+    for values in combinations(variations):
+        varied = tuple(f"{variation.key}={value}" for variation, value in zip(variations, values, strict=True))
+        experiment = open_experiment(source, (*changes, *varied))
+        experiment.initial_points(seeds[0])
+        found.append(Combination(varied, values, experiment.file, batch_size(experiment)))
+    return Study(changes, tuple(variations), tuple(found), seeds)
+
+
+def sweep(
+    study: Study, out: Path | None, run_all: Spread, on_progress: Callable[[int, int], None]
+) -> tuple[list[Summary], Path]:
+    """Run every seed and write one row per run, in order, each as soon as it is there.
+
+    Args:
+        study: what to run.
         out: folder of the files; None for the default.
-        workers: number of processes. The rows do not depend on it.
+        run_all: what makes the runs. The rows do not depend on it.
         on_progress: called with the number of runs done and of all runs.
 
     Returns:
-        The summary, and the folder that it was written to.
+        The summary of each combination, and the folder that they were written to.
 
     Raises:
-        InputError: the scenario cannot be used, or the folder cannot be written.
+        InputError: the folder cannot be written, or a run cannot be made.
     """
-    experiment = open_experiment(source, changes)
-    experiment.initial_points(seeds[0])
-    name = f"sweep-{experiment.file.name}-{experiment.plant}-seeds{seeds[0]}-{seeds[-1]}"
-    folder = out or Path("runs") / name
-    size = batch_size(experiment)
-    batches = [Batch(source, changes, tuple(seeds[i : i + size])) for i in range(0, len(seeds), size)]
+    folder = out or study.default_folder
+    batches, keys = study.batches(), [variation.key for variation in study.variations]
     rows: list[Row] = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with (folder / PARTIAL).open("w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file, lineterminator="\n")
-            writer.writerow([field.name for field in fields(Row)])
-            for finished in run_all(run_batch, batches, workers):
-                writer.writerows(list(asdict(row).values()) for row in finished)
+            writer.writerow(_with_varied([field.name for field in fields(Row)], keys))
+            for batch, finished in zip(batches, run_all(run_batch, batches), strict=True):
+                values = batch.combination.values
+                writer.writerows(_with_varied(list(asdict(row).values()), values) for row in finished)
                 file.flush()
                 rows += finished
-                on_progress(len(rows), len(seeds))
+                on_progress(len(rows), study.runs)
         (folder / PARTIAL).replace(folder / ROWS)
-        summary = summarise(rows)
-        content = {"scenario_sha256": experiment.file.sha256, "changes": list(changes), "quantiles_at": QUANTILES}
-        write_json(folder / SUMMARY, {**content, **asdict(summary)})
+        size = len(study.seeds)
+        summaries = [summarise(rows[i : i + size]) for i in range(0, len(rows), size)]
+        write_json(folder / SUMMARY, _summary_file(study, summaries))
     except OSError as error:
         raise InputError(f"--out {folder}: cannot be written: {error.strerror}") from error
-    return summary, folder
+    return summaries, folder
+
+
+def _with_varied(cells: list[Any], varied: Sequence[str]) -> list[Any]:
+    """What tells the run comes before what it gave."""
+    return [*cells[:RUN_COLUMNS], *varied, *cells[RUN_COLUMNS:]]
+
+
+def _summary_file(study: Study, summaries: Sequence[Summary]) -> dict[str, Any]:
+    """The content of ``summary.json``."""
+    content = {"changes": list(study.changes), "quantiles_at": QUANTILES}
+    if not study.variations:
+        return {"scenario_sha256": study.combinations[0].file.sha256, **content, **asdict(summaries[0])}
+    return {
+        **content,
+        "varied": {variation.key: variation.values for variation in study.variations},
+        "combinations": [
+            {"changes": combination.changes, "scenario_sha256": combination.file.sha256, **asdict(summary)}
+            for combination, summary in zip(study.combinations, summaries, strict=True)
+        ],
+    }
 
 
 def batch_size(experiment: Experiment) -> int:
@@ -173,7 +262,7 @@ def batch_size(experiment: Experiment) -> int:
 
 def run_batch(batch: Batch) -> list[Row]:
     """The rows of a batch."""
-    experiment = open_experiment(batch.source, batch.changes)
+    experiment = build(batch.combination.file)
     return [_row(experiment, seed, run) for seed, run in zip(batch.seeds, _runs(experiment, batch.seeds), strict=True)]
 
 

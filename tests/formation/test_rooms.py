@@ -30,7 +30,7 @@ def test_a_room_imports_nothing_but_what_it_may_know(room: str) -> None:
 
 @pytest.mark.parametrize("module", ["formation", "robots", "scenarios.cli"])
 def test_importing_loads_no_heavy_package(module: str) -> None:
-    heavy = "{'matplotlib', 'rerun', 'numba', 'daqp', 'pymunk', 'pyarrow'}"
+    heavy = "{'matplotlib', 'rerun', 'numba', 'daqp', 'pymunk', 'pyarrow', 'dask', 'distributed'}"
     code = f"import sys, {module}; print(*({heavy} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == []
