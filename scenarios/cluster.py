@@ -75,8 +75,12 @@ def _run_all(client: Client, address: str, work: Callable[[Task], Result], tasks
             ) from error
         if isinstance(error, ModuleNotFoundError):
             raise InputError(f"--scheduler {address}: {task}: its worker lacks a package: {error}") from error
-        yield future.result()
+        if error is not None:
+            raise error.with_traceback(future.traceback())
+        with _located(address):
+            result = future.result()
         future.release()
+        yield result
 
 
 def _run_here(work: Callable[[Task], Result], expected: str, task: Task) -> Result:
@@ -91,12 +95,16 @@ def _wait(client: Client, address: str, future: Future[Any]) -> BaseException | 
     with _located(address):
         while True:
             try:
-                return future.exception(timeout=ARRIVING)
+                error = future.exception(timeout=ARRIVING)
             except TimeoutError:
                 if not client.nthreads():
                     raise InputError(
                         f"--scheduler {address}: no worker left for {ARRIVING:g} s, {START_WORKERS.format(address)}"
                     ) from None
+            else:
+                if isinstance(error, CancelledError):  # nobody here cancels: the scheduler is gone
+                    raise error
+                return error
 
 
 @cache  # a worker that has loaded the project keeps running it, whatever becomes of its files

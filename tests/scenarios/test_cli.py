@@ -94,6 +94,20 @@ def test_a_run_that_reaches_its_goal_answers_0_and_one_that_does_not_1(cli: Cli)
     assert cli("run", "shape", "--plant", "unicycle", "--duration", "1").code == MISSED
 
 
+def test_a_sweep_prints_a_line_per_combination_and_a_whole_summary_where_nothing_is_varied(cli: Cli) -> None:
+    short = ("sweep", "shape", "--seeds", "0:2", *sets("duration_s=0.2"), "--workers", "1")
+    answer = cli(*short, "--vary", "plant.name=unicycle,pymunk", "--vary", "safety.filter=none,decentralised")
+    assert (answer.code, answer.err) == (DONE, "")
+    assert "8 runs, 2 of each combination" in answer.out
+    assert "rows: runs/sweep-shape-plant.name-safety.filter-seeds0-1/rows.csv" in answer.out
+    lines = [line.split()[:2] for line in answer.out.splitlines()]
+    for combination in (["unicycle", "none"], ["unicycle", "decentralised"], ["pymunk", "none"]):
+        assert combination in lines
+    answer = cli(*short)
+    assert "settling time (s)" in answer.out
+    assert "rows: runs/sweep-shape-pymunk-seeds0-1/rows.csv" in answer.out
+
+
 def test_a_bare_command_and_help_print_the_commands(cli: Cli) -> None:
     for arguments in ((), ("--help",), ("-h",)):
         answer = cli(*arguments)
@@ -148,6 +162,11 @@ def test_a_diverged_run_is_told_without_a_warning(cli: Cli) -> None:
         (["run", "shape", "--plant", "pymnk"], ["plant.name: expected 'single_integrator'", "got 'pymnk'"]),
         (["run", "shape", "--plant", 'a"b'], ["plant.name"]),
         (["run", "shape", "--bogus"], ["--bogus"]),
+        (["sweep", "shape", "--seeds", "0:2", "--vary", "duration_s"], ["--vary duration_s: expected KEY=V1,V2"]),
+        (["sweep", "shape", "--seeds", "0:2", "--vary", "duration=1,2"], ["unknown key, did you mean 'duration_s'?"]),
+        (["sweep", "shape", "--seeds", "0:2", "--plant", "pymunk", "--vary", "plant.name=unicycle"], ["too"]),
+        (["sweep", "shape", "--seeds", "0:2", "--scheduler", "here"], ["--scheduler here: expected an address"]),
+        (["sweep", "shape", "--seeds", "0:2", "--scheduler", "tcp://a:1", "--workers", "2"], ["--workers: not"]),
     ],
 )
 def test_wrong_arguments(cli: Cli, tmp_path: Path, arguments: list[str], words: list[str]) -> None:

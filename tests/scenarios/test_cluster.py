@@ -173,6 +173,25 @@ def test_an_interrupt_drops_what_is_queued_and_keeps_the_finished_rows(
     assert len(begun) < 100
 
 
+def test_a_scheduler_that_goes_away_and_workers_that_all_go_away_are_told(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(cluster, "ARRIVING", 0.5)
+    with in_threads(1) as made, cluster.connected(made.scheduler_address) as run_all:
+        made.sync(made.workers[0].close)
+        with pytest.raises(InputError, match=r"no worker left for 0.5 s, start one with `dask worker tcp://"):
+            list(run_all(abs, [-1]))
+    made = in_threads(1)
+    with cluster.connected(made.scheduler_address) as run_all:
+        made.sync(made.workers[0].close)
+        monkeypatch.setattr(cluster, "ARRIVING", 20.0)
+        closing = threading.Timer(0.2, made.close)  # while the task waits for a worker
+        closing.start()
+        with pytest.raises(InputError, match="the connection to the scheduler was lost"):
+            list(run_all(abs, [-1]))
+        closing.join()
+
+
 # What is refused
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from formation import AngleLaw
+from robots.worlds import NOTHING
 from scenarios import run_folder
 from scenarios.cli import BAD_INPUT, DONE, main
 from scenarios.errors import InputError
@@ -369,7 +370,7 @@ def test_the_example_converges_among_bodies_with_the_filter() -> None:
     for seed in range(3):
         trajectory = simulate(experiment, seed)
         assert measure(experiment, trajectory).outcome == "converged"
-        assert not trajectory.contact.any()
+        assert (trajectory.contact == NOTHING).all()
 
 
 def test_the_example_says_what_is_wrong_with_its_bound() -> None:
