@@ -4,6 +4,7 @@ import builtins
 import importlib.metadata
 import operator
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -55,25 +56,28 @@ def local() -> Iterator[Local]:
 
 @pytest.fixture(scope="module")
 def commands(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """A scheduler and a worker, started by the commands of the documents in a folder of their own."""
+    """A scheduler and two workers, started by the commands of the documents in a folder of their own."""
     folder = tmp_path_factory.mktemp("cluster")
-    environment = os.environ | {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1"}
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
-    processes = [
-        subprocess.Popen(
-            [sys.executable, "-m", "dask", *arguments, "--no-dashboard"],
-            cwd=folder, env=environment, stderr=subprocess.DEVNULL,
+    options = ["--host", "127.0.0.1", "--no-dashboard", "--dashboard-address", "127.0.0.1:0"]
+
+    def dask(*arguments: str) -> subprocess.Popen[str]:
+        return subprocess.Popen(
+            [sys.executable, "-m", "dask", *arguments, *options],
+            cwd=folder,
+            env=os.environ | {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1"},
+            stderr=subprocess.PIPE,
+            text=True,
         )
-        for arguments in (
-            ["scheduler", "--host", address, "--dashboard-address", "127.0.0.1:0"],
-            ["worker", address, "--nthreads", "1", "--nworkers", "1", "--dashboard-address", "127.0.0.1:0"],
-        )
-    ]  # fmt: skip
-    yield address
-    for process in reversed(processes):
-        process.terminate()
-        process.wait(20)
+
+    with dask("scheduler", "--port", "0") as scheduler:
+        said = iter(scheduler.stderr or ())
+        [address] = next(found for line in said if (found := re.findall(r"Scheduler at: +(tcp://\S+)", line)))
+        with dask("worker", address, "--nthreads", "1", "--nworkers", "2") as worker:
+            yield address
+            worker.terminate()
+            worker.communicate()
+        scheduler.terminate()
+        scheduler.communicate()
 
 
 def refused(address: str, *words: str) -> None:
@@ -105,7 +109,7 @@ def test_workers_need_no_file_and_a_lost_worker_loses_no_row(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("mine.toml").write_text((LIBRARY / "shape.toml").read_text(encoding="utf-8"), encoding="utf-8")
-    study = open_study("mine.toml", SHORT, (), range(6))
+    study = open_study("mine.toml", (*SHORT, "safety.filter=none"), (), range(6))
     Path("mine.toml").unlink()
     sweep(study, tmp_path / "here", partial(pool.run_all, workers=1), lambda *_: None)
     with cluster.connected(commands) as run_all:
