@@ -1,13 +1,15 @@
 """The public simulator's barrier certificate, with its defaults: the reference that users of the Robotarium know.
 
-Wang, Ames, Egerstedt 2017, "Safety barrier certificates for collisions-free multirobot systems", as ``rps`` 2.1 states
-it for single integrators with a boundary: of all velocities the nearest to the wished ones, cut to 0.2 m/s each, with
+Wang, Ames, Egerstedt 2017, "Safety barrier certificates for collisions-free multirobot systems", as ``rps`` states it
+for single integrators with a boundary, ``create_single_integrator_barrier_certificate_with_boundary`` until 2.0: of all
+velocities the nearest to the wished ones, cut to 0.2 m/s each, with
 
     2 e_ij.(v_i - v_j) >= -gamma h^3,     h = |e_ij|^2 - 0.17^2,     e_ij = c_i - c_j,     every pair,
     n.v_i >= -0.4 gamma (d - 0.17 / 2)^3,                                                  every side of the floor,
 
 gamma = 100, d the distance from the side with the inward normal n. All robots, no wheel limits, no way out of a
-deadlock.
+deadlock. ``rps`` 2.1 keeps the rows, in ``create_si_barrier_certificate_with_boundary``; it takes 0.15 m, a boundary
+0.1 m beyond the floor, and eight rows per robot instead of the cut.
 """
 
 from __future__ import annotations
@@ -20,16 +22,16 @@ from robots.safety.joint import JointFilter, Rows, disturbed, things
 from robots.safety.protocol import WALLS, Noise, Real
 
 SAFETY_RADIUS = 0.17
-"""Metres between two robots (``rps`` 2.1)."""
+"""Metres between two robots (``rps`` 2.0)."""
 
 BARRIER_GAIN = 100.0
-"""1/(m^4 s) (``rps`` 2.1)."""
+"""1/(m^4 s) (``rps`` 2.0)."""
 
 BOUNDARY_SHARE = 0.4
-"""Share of the gain at the boundary (``rps`` 2.1)."""
+"""Share of the gain at the boundary (``rps`` 2.0)."""
 
 MAGNITUDE_LIMIT = 0.2
-"""m/s to which wishes are cut (``rps`` 2.1)."""
+"""m/s to which wishes are cut (``rps`` 2.0)."""
 
 
 class RobotariumCertificate(JointFilter):

@@ -20,6 +20,8 @@ Index = NDArray[np.intp]
 
 _PENALTY = 1e4  # of a relaxation, per m/s: far above every multiplier of a problem that needs none
 _RELAXED = 1e-9  # m/s below which a relaxation is rounding
+_TIGHT = 1e-6  # by which DAQP itself may break a row
+_DECISIVE = 1e-7  # slack up to which a row counts as one of those that decided
 _UNBOUNDED = 1e30
 
 
@@ -50,16 +52,35 @@ class Rows:
         matrix[paired, self.second[paired]] = -self.a[paired]
         return matrix.reshape(m, 2 * n)
 
-    def of(self, robots: Index) -> Rows:
-        """The rows of some robots, which are all that those rows name."""
-        mine = np.isin(self.first, robots)
-        return Rows(self.first[mine], self.second[mine], self.codes[mine], self.a[mine], self.lower[mine])
+    def where(self, chosen: NDArray[np.bool_]) -> Rows:
+        """The rows that ``chosen`` (m,) says."""
+        return Rows(self.first[chosen], self.second[chosen], self.codes[chosen], self.a[chosen], self.lower[chosen])
+
+    def within_reach(self, speed: Real) -> NDArray[np.bool_]:
+        """(m,) which rows robots could break that drive at ``speed`` (n,), m/s, wherever they head."""
+        both = speed[self.first] + np.where(self.second >= 0, speed[self.second], 0.0)
+        return self.lower > -both * np.linalg.norm(self.a, axis=1)
+
+    def slack(self, v: Real, lowered: Real) -> Real:
+        """(m,) by how much velocities v (n, 2), m/s, satisfy the rows, those between robots of a relaxed group lowered.
+
+        Args:
+            lowered: (n,) by how much the rows of each robot's group were lowered; a row between two groups by less.
+        """
+        paired = self.second >= 0
+        relative = v[self.first] - np.where(paired[:, None], v[self.second], 0.0)
+        allowance = np.where(paired, np.minimum(lowered[self.first], lowered[self.second]), lowered[self.first])
+        return (self.a * relative).sum(axis=1) - self.lower + allowance
 
 
 class JointFilter(ABC):
     """One QP over all robots of a run; a batch of runs is solved run by run.
 
     A subclass says what the robots wish for, which rows keep them apart and what their wheels can do.
+
+    Most rows of a crowd are between robots too far apart to matter, and a matrix of them all grows with n^3. So the QP
+    begins with the rows that robots as fast as they wish to be could break, and takes in what its solution breaks,
+    until that is nothing. A solution that satisfies the rows left out is the solution with them.
     """
 
     def __init__(self, shape: tuple[int, ...]) -> None:
@@ -100,27 +121,41 @@ class JointFilter(ABC):
         """(n, k, 2) directions in which a robot's velocity has a limit, world frame, and the limit, m/s."""
 
     def _solve(self, run: int, wish: Real, rows: Rows, frame: NDArray[np.complex128]) -> Real:
+        directions, limit = self._wheels(frame)
+        used = rows.within_reach(np.linalg.norm(wish, axis=1))
+        while True:
+            v, lowered = _solve_groups(wish, rows.where(used), directions, limit)
+            slack = rows.slack(v, lowered)
+            broken = ~used & (slack < -_TIGHT)
+            if not broken.any():
+                break
+            used |= broken
+        self._report(run, rows, slack, lowered)
+        return v
+
+    def _report(self, run: int, rows: Rows, slack: Real, lowered: Real) -> None:
         relaxation = self.relaxation.reshape(-1, self._n)[run]
         blockers = self.blockers.reshape(-1, self._n, BLOCKERS)[run]
         relaxation[:], blockers[:] = 0.0, -1
-        directions, limit = self._wheels(frame)
-        v = wish.copy()
-        for robots in groups(self._n, rows):
-            mine = rows.of(robots)
-            first = np.searchsorted(robots, mine.first)
-            second = np.where(mine.second < 0, -1, np.searchsorted(robots, mine.second))
-            matrix = Rows(first, second, mine.codes, mine.a, mine.lower).matrix(len(robots))
-            v[robots], delta = nearest(wish[robots], matrix, mine.lower, _blocks(directions[robots]), limit)
-            if delta > 0.0:
-                slack = matrix @ v[robots].ravel() - (mine.lower - delta)
-                for row in np.flatnonzero(slack <= 1e-7):
-                    for robot, code in ((mine.first[row], mine.codes[row]), (mine.second[row], mine.first[row])):
-                        if robot >= 0:
-                            relaxation[robot] = delta
-                            free = np.flatnonzero(blockers[robot] < 0)
-                            if free.size:
-                                blockers[robot, free[0]] = code
-        return v
+        for row in np.flatnonzero((lowered[rows.first] > 0.0) & (slack <= _DECISIVE)):
+            for robot, code in ((rows.first[row], rows.codes[row]), (rows.second[row], rows.first[row])):
+                if robot >= 0:
+                    relaxation[robot] = lowered[robot]
+                    free = np.flatnonzero(blockers[robot] < 0)
+                    if free.size:
+                        blockers[robot, free[0]] = code
+
+
+def _solve_groups(wish: Real, rows: Rows, directions: Real, limit: float) -> tuple[Real, Real]:
+    """The velocities (n, 2) nearest to ``wish``, m/s, and by how much each robot's rows were lowered, (n,) m/s."""
+    v, lowered = wish.copy(), np.zeros(len(wish))
+    for robots in groups(len(wish), rows):
+        mine = rows.where(np.isin(rows.first, robots))
+        first = np.searchsorted(robots, mine.first)
+        second = np.where(mine.second < 0, -1, np.searchsorted(robots, mine.second))
+        matrix = Rows(first, second, mine.codes, mine.a, mine.lower).matrix(len(robots))
+        v[robots], lowered[robots] = nearest(wish[robots], matrix, mine.lower, _blocks(directions[robots]), limit)
+    return v, lowered
 
 
 def nearest(wish: Real, matrix: Real, lower: Real, hard: Real, limit: float) -> tuple[Real, float]:
