@@ -1,4 +1,9 @@
-"""One step of the safety filters in a crowd of constant density, beside the testbed's certificate."""
+"""One step of the safety filters in a crowd of constant density, beside the public simulator's own certificate.
+
+That one is measured where the simulator can be imported:
+
+    pip install git+https://github.com/robotarium/robotarium_python_simulator
+"""
 
 from __future__ import annotations
 
@@ -12,12 +17,19 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 from robots import GTERNAL, Arena, NearIdentityDiffeomorphism
 from robots.safety import FilterSettings, SafetyFilter, make_filter
+from robots.safety.certificate import BARRIER_GAIN, MAGNITUDE_LIMIT, SAFETY_RADIUS
 
 NID = NearIdentityDiffeomorphism(0.025)
 PERIOD = 0.033
 SPACING = 0.2
 TARGETS = {6: 60.0, 20: 400.0, 50: 400.0, 100: 1000.0, 1000: 10000.0}
 """Microseconds; those for 6 and 50 are the project's, the others keep them honest."""
+
+PEERS = (
+    "create_si_barrier_certificate_with_boundary",
+    "create_single_integrator_barrier_certificate_with_boundary",
+)
+"""The certificate's name since ``rps`` 2.1, and before."""
 
 Crowd = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
@@ -66,11 +78,35 @@ def test_decentralised(benchmark: BenchmarkFixture, target: Callable[..., None],
     target(f"decentralised filter, {n} robots", per_step(safety, scenes), TARGETS[n], "us")
 
 
-@pytest.mark.parametrize("n", [6, 20, 50, 100])
+@pytest.mark.parametrize("n", [6, 20, 50, 100, 1000])
 @pytest.mark.parametrize("name", ["centralised", "robotarium"])
 def test_joint_filters(benchmark: BenchmarkFixture, name: str, n: int) -> None:
     safety, ahead = build(name, n), cycle(crowds(n))
-    benchmark(lambda: safety.filter(*next(ahead), PERIOD))
+    measured(benchmark, lambda: safety.filter(*next(ahead), PERIOD), once=n > 100)
+
+
+@pytest.mark.parametrize("n", [6, 20, 50, 100, 200])
+def test_the_public_simulators_certificate(benchmark: BenchmarkFixture, n: int) -> None:
+    """With the figures of our own, so that both solve one problem; its velocities are of the world frame."""
+    module = pytest.importorskip("rps.utilities.barrier_certificates", reason="rps is not installed")
+    make = next(getattr(module, name) for name in PEERS if hasattr(module, name))
+    half = SPACING * np.sqrt(n) + 1.0
+    certificate = make(
+        barrier_gain=BARRIER_GAIN,
+        safety_radius=SAFETY_RADIUS,
+        magnitude_limit=MAGNITUDE_LIMIT,
+        boundary_points=np.array([-half, half, -half, half]),
+    )
+    ahead = cycle([(velocities.T.copy(), points.T.copy()) for points, _, velocities, _ in crowds(n)])
+    measured(benchmark, lambda: certificate(*next(ahead)), once=n > 100)
+
+
+def measured(benchmark: BenchmarkFixture, step: Callable[[], object], once: bool) -> None:
+    """Time many steps, or a single one where a step takes seconds."""
+    if once:
+        benchmark.pedantic(step, rounds=1)
+    else:
+        benchmark(step)
 
 
 def test_growth_is_linear(benchmark: BenchmarkFixture, target: Callable[..., None]) -> None:

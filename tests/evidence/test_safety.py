@@ -12,16 +12,19 @@ import numpy as np
 import pytest
 
 from robots import GTERNAL
-from robots.testbed import COLLISION_DISTANCE, collision_centres
+from robots.safety import FilterSettings
+from robots.testbed import COLLISION_DISTANCE, collision_centres, separation
 from scenarios.experiment import Experiment, open_experiment
 from scenarios.metrics import measure
 from scenarios.simulation import simulate
+from scenarios.tracking import predicted_ends
 
 SEEDS = int(os.environ.get("EVIDENCE_SEEDS", "12"))
 
 pytestmark = pytest.mark.slow
 
 FLOOR_STARTS = "random_start={x_m=[-1.5, 1.5], y_m=[-0.9, 0.9], min_separation_m=0.2}"
+LEGAL_STARTS = f"random_start={{x_m=[-1.5, 1.5], y_m=[-0.9, 0.9], min_separation_m={COLLISION_DISTANCE}}}"
 DISTURBED = (
     "sensor.position_noise_m=0.01",
     "sensor.bearing_noise_deg=1.0",
@@ -32,12 +35,19 @@ DISTURBED = (
 
 @dataclass(frozen=True)
 class Run:
-    """What one seed came to; distances in metres."""
+    """What one seed came to; distances in metres.
+
+    Attributes:
+        closest: two robots at any time.
+        tightest_end: two places at the end of any phase, as the theory predicts it.
+    """
 
     seed: int
     outcome: str
     settling_time: float | None
     closest: float
+    tightest_end: float
+    began_in_contact: bool
     contact: bool
     accepted: bool
     relaxed: int
@@ -59,6 +69,8 @@ def one(experiment: Experiment, seed: int) -> Run:
         outcome=metrics.outcome,
         settling_time=metrics.settling_time,
         closest=float(metrics.separation.distance.min()),
+        tightest_end=float(separation(predicted_ends(experiment, trajectory.points[0])).distance.min()),
+        began_in_contact=touched(trajectory.poses[:1]),
         contact=touched(trajectory.poses),
         accepted=metrics.verdict.accepted,
         relaxed=int((trajectory.relaxation > 0.0).sum()),
@@ -121,6 +133,20 @@ def test_random_starts_on_the_floor_converge(scenario: str) -> None:
     report(f"{scenario}, random starts", found)
     assert sum(r.outcome != "converged" for r in found) <= SEEDS // 500
     assert not any(r.contact for r in found)
+
+
+@pytest.mark.parametrize("scenario", ["shape", "maneuver"])
+def test_every_start_that_the_testbed_accepts_converges_if_robots_fit_on_the_places_of_its_end(scenario: str) -> None:
+    """Agents 1 and 2 fix the size of the shape: from too near, the theory itself ends closer than the filter allows."""
+    found = runs(scenario, LEGAL_STARTS)
+    fits = [r for r in found if r.tightest_end >= FilterSettings().safe_distance]
+    report(f"{scenario}, legal starts, {len(fits)} with an end that fits", found)
+    for r in found:
+        if r.outcome != "converged":
+            print(f"seed {r.seed} missed: places of its end are {r.tightest_end:.4f} m apart")
+    assert sum(r.outcome != "converged" for r in fits) <= SEEDS // 500
+    assert not any(r.contact and not r.began_in_contact for r in found)
+    assert min(r.closest for r in found) >= COLLISION_DISTANCE
 
 
 def test_the_filter_costs_at_most_a_quarter_of_the_settling_time() -> None:
