@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robots.testbed import collision_centres
+from robots import GTERNAL
+from robots.testbed import collision_centres, separation
 from scenarios.cli import main
 from scenarios.errors import InputError
 from scenarios.experiment import open_experiment
@@ -15,6 +16,7 @@ from scenarios.metrics import measure
 from scenarios.result import result
 from scenarios.safety_result import deadlocks
 from scenarios.simulation import simulate
+from scenarios.tracking import predicted_ends
 from scenarios.trajectory import Trajectory
 
 NOISE = ("sensor.position_noise_m=0.01", "sensor.bearing_noise_deg=1.0")
@@ -117,6 +119,19 @@ def test_deadlocks_have_a_beginning_and_an_end() -> None:
         {"agent": 3, "from_s": float(t[5]), "until_s": float(t[9])},
         {"agent": 5, "from_s": float(t[20]), "until_s": None},
     ]
+
+
+def test_where_the_end_is_too_tight_robots_wait_rather_than_touch_and_the_run_says_so() -> None:
+    """Agents 1 and 2 start 0.19 m apart and keep to it: places of the end are 0.707 of that apart, less than Ds."""
+    experiment = open_experiment("shape", ("plant.name=saturated", "agents.2.start=[-0.19, 0.5]"))
+    trajectory = simulate(experiment, 0)
+    metrics = measure(experiment, trajectory)
+    ends = separation(predicted_ends(experiment, trajectory.points[0])).distance
+    settings = experiment.filter_settings
+    assert ends.min() < settings.safe_distance
+    assert metrics.outcome == "not_converged"
+    assert deadlocks(trajectory, settings.stuck_time)
+    assert metrics.separation.distance.min() > 2.0 * GTERNAL.chassis.radius
 
 
 def test_the_trajectory_keeps_what_the_filter_said(tmp_path) -> None:
