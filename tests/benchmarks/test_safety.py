@@ -85,7 +85,7 @@ def test_joint_filters(benchmark: BenchmarkFixture, name: str, n: int) -> None:
     measured(benchmark, lambda: safety.filter(*next(ahead), PERIOD), once=n > 100)
 
 
-@pytest.mark.parametrize("n", [6, 20, 50, 100, 200])
+@pytest.mark.parametrize("n", [6, 20, 50, 100, 200, 500])
 def test_the_public_simulators_certificate(benchmark: BenchmarkFixture, n: int) -> None:
     """With the figures of our own, so that both solve one problem; its velocities are of the world frame."""
     module = pytest.importorskip("rps.utilities.barrier_certificates", reason="rps is not installed")
