@@ -44,7 +44,9 @@ class Labels:
         self._axes = axes
         self._scale = points_per_metre(axes)
         finite = occupied.reshape(-1, 2)
-        self._occupied = finite[np.isfinite(finite).all(axis=1)] * self._scale
+        points = finite[np.isfinite(finite).all(axis=1)] * self._scale
+        self._occupied = points[np.argsort(points[:, 0])]  # by x: a thousand trails are searched for every label
+        self._labels = np.empty((0, 2))
 
     def put(self, anchor: Real, text: str, distance: float, size: float = SMALL, crowded: bool = False) -> None:
         """Write ``text`` near ``anchor`` (2,), metres, with its centre ``distance`` points away or somewhat more.
@@ -63,7 +65,7 @@ class Labels:
             return
         best = candidates[int(score.argmax())]
         across = np.array([[-half_width, 0.0], [0.0, 0.0], [half_width, 0.0]])
-        self._occupied = np.concatenate([self._occupied, best + across])
+        self._labels = np.concatenate([self._labels, best + across])
         x, y = best / self._scale
         self._axes.text(x, y, text, fontsize=size, color=INK, ha="center", va="center_baseline", zorder=6)
 
@@ -72,9 +74,16 @@ class Labels:
         (x0, x1), (y0, y1) = (
             np.array(limits) * self._scale for limits in (self._axes.get_xlim(), self._axes.get_ylim())
         )
-        offset = self._occupied - candidates[:, None, :]
+        offset = self._near(candidates, half_width + _ENOUGH * size) - candidates[:, None, :]
         gap = np.hypot(np.maximum(np.abs(offset[..., 0]) - half_width, 0.0), offset[..., 1])
         nearest = gap.min(axis=1, initial=np.inf)
         inside = (candidates[:, 0] - half_width > x0) & (candidates[:, 0] + half_width < x1)
         inside &= (candidates[:, 1] - 0.5 * size > y0) & (candidates[:, 1] + 0.5 * size < y1)
         return np.where(inside, np.minimum(nearest, _ENOUGH * size), -size)
+
+    def _near(self, candidates: Real, reach: float) -> Real:
+        """(q, 2) what is occupied within ``reach`` points of any candidate (c, 2), and some more."""
+        low, high = candidates.min(axis=0) - reach, candidates.max(axis=0) + reach
+        first, last = np.searchsorted(self._occupied[:, 0], [low[0], high[0]])
+        band = self._occupied[first:last]
+        return np.concatenate([band[(band[:, 1] >= low[1]) & (band[:, 1] <= high[1])], self._labels])
