@@ -302,6 +302,39 @@ def reproduce(markdown: Path | None, workers: int | None) -> None:
         write_text(markdown, page, "--markdown")
 
 
+@cli.command()
+@click.argument("scenario")
+@click.option("--seed", default=0, show_default=True, type=click.IntRange(min=0), help="Seed of random starts.")
+@click.option("--safety", metavar="F", help="none, or any filter for the Robotarium's certificate.")
+@click.option("--duration", type=float, metavar="S", help="Seconds to run instead of the scenario's own.")
+@click.option("--set", "changes", multiple=True, metavar="KEY=VALUE", help="Change a key of the scenario.")
+@click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Write to this file instead of printing.")
+@click.option("--force", is_flag=True, help="Replace the file of --out, with whatever was changed in it.")
+def export(
+    scenario: str,
+    seed: int,
+    safety: str | None,
+    duration: float | None,
+    changes: tuple[str, ...],
+    out: Path | None,
+    force: bool,
+) -> None:
+    """Print a script that runs SCENARIO (a name or a file) on the Robotarium: numpy and rps, nothing else."""
+    from scenarios.experiment import open_experiment
+    from scenarios.export.script import script
+    from scenarios.files import write_whole
+
+    if safety is not None:
+        changes = (*changes, f'safety.filter="{safety}"')
+    text = script(open_experiment(scenario, changes, duration), seed)
+    if out is None:
+        click.echo(text, nl=False)
+        return
+    if out.exists() and not force:
+        raise InputError(f"--out {out}: exists, and may hold changes of yours; --force replaces it")
+    write_whole(out, text.encode())
+
+
 def _console() -> Console:
     from rich.console import Console
 

@@ -1,0 +1,1 @@
+"""A scenario as a script that the Robotarium runs."""

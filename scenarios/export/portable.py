@@ -1,0 +1,62 @@
+"""What of a scenario the testbed can run, and the refusal of the rest."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from formation import agents
+from robots import GTERNAL, ROBOTARIUM_FLOOR
+from robots.model import CONTROL_PERIOD
+from robots.robotarium import MOST_ROBOTS
+from scenarios.errors import InputError
+from scenarios.experiment import Experiment
+from scenarios.schema import Scenario
+
+Real = NDArray[np.float64]
+
+
+def start_poses(experiment: Experiment, seed: int) -> Real:
+    """(n, 3) poses of the axles' centres at the start of the run with that seed, metres and radians.
+
+    Raises:
+        InputError: the testbed cannot run the scenario; the message names the field.
+    """
+    path, scenario = experiment.file.path, experiment.scenario
+    for field, value, expected in _required(scenario):
+        if value != expected:
+            raise InputError(f"{path}: {field}: a script for the testbed needs {expected!r}, got {value!r}")
+    if scenario.obstacles:
+        raise InputError(f"{path}: obstacles: the testbed has none, got {len(scenario.obstacles)}")
+    for axis, side, floor in (
+        ("x_m", scenario.arena.x_m, ROBOTARIUM_FLOOR.x),
+        ("y_m", scenario.arena.y_m, ROBOTARIUM_FLOOR.y),
+    ):
+        if side[0] < floor[0] or side[1] > floor[1]:
+            raise InputError(f"{path}: arena.{axis}: expected a part of the testbed's {list(floor)}, got {list(side)}")
+    if experiment.n > MOST_ROBOTS:
+        raise InputError(f"{path}: agents: the testbed has {MOST_ROBOTS} robots, got {experiment.n}")
+    points, headings = experiment.starts.draw(np.random.default_rng(seed))
+    poses = experiment.nid.poses(points, headings)
+    if (outside := np.flatnonzero(~ROBOTARIUM_FLOOR.contains(poses[:, :2]))).size:
+        x, y = poses[outside[0], :2]
+        raise InputError(
+            f"{path}: agents[id {agents.number(outside[0])}].start: with the heading of seed {seed} its axle is at "
+            f"({x:.3f}, {y:.3f}) m, expected a place on the testbed's floor"
+        )
+    return poses
+
+
+def _required(scenario: Scenario) -> list[tuple[str, object, object]]:
+    """Field, value and the one value that a script can carry."""
+    sensor = scenario.sensor
+    return [
+        ("law.activation", scenario.law.activation, "simultaneous"),
+        ("velocity_known_by", scenario.velocity_known_by, "all"),
+        ("robot.wheel_speed_limit_rad_s", scenario.robot.wheel_speed_limit_rad_s, GTERNAL.drive.wheel_speed_limit),
+        ("plant.control_period_s", scenario.plant.control_period_s, CONTROL_PERIOD),
+        ("sensor.position_noise_m", sensor.position_noise_m, 0.0),
+        ("sensor.bearing_noise_deg", sensor.bearing_noise_deg, 0.0),
+        ("sensor.compass_bias_deg", sensor.compass_bias_deg, 0.0),
+        ("sensor.delay_periods", sensor.delay_periods, 0),
+    ]
