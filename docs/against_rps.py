@@ -31,6 +31,13 @@ EXAMPLES = (
     "formation_control/formation_control.py",
     "leader_follower/leader_follower.py",
 )
+EXPORTED: tuple[tuple[str, tuple[str, ...]], ...] = (
+    ("shape", ()),
+    ("shape", ("agents.4.start=[0.4, 0.6]",)),
+    ("shape", ('safety.filter="none"',)),
+    ("maneuver-testbed", ()),
+    ("maneuver-testbed", ('safety.filter="none"',)),
+)
 LONGEST = 6000  # steps, after which a script, or the public simulator's drive to the start, counts as stuck
 
 
@@ -164,9 +171,8 @@ def main() -> None:
     else:
         compare_steps()
         Peer.skip = False
-        for scenario in ("shape", "maneuver-testbed"):
-            for changes in ((), ('safety.filter="none"',)):
-                run_exported(scenario, changes, given.seeds)
+        for scenario, changes in EXPORTED:
+            run_exported(scenario, changes, given.seeds)
 
 
 if __name__ == "__main__":

@@ -319,14 +319,21 @@ def export(
     out: Path | None,
     force: bool,
 ) -> None:
-    """Print a script that runs SCENARIO (a name or a file) on the Robotarium: numpy and rps, nothing else."""
+    """Print a script that runs SCENARIO (a name or a file) on the Robotarium: numpy and rps, nothing else.
+
+    A safety filter becomes the Robotarium's certificate. What a script cannot carry is refused.
+    """
     from scenarios.experiment import open_experiment
+    from scenarios.export.portable import crowded, start_poses
     from scenarios.export.script import script
     from scenarios.files import write_whole
 
     if safety is not None:
         changes = (*changes, f'safety.filter="{safety}"')
-    text = script(open_experiment(scenario, changes, duration), seed)
+    experiment = open_experiment(scenario, changes, duration)
+    text = script(experiment, seed)
+    if (remark := crowded(start_poses(experiment, seed))) is not None:
+        click.echo(f"note: {remark}", err=True)
     if out is None:
         click.echo(text, nl=False)
         return

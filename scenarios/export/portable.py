@@ -9,11 +9,15 @@ from formation import agents
 from robots import GTERNAL, ROBOTARIUM_FLOOR
 from robots.model import CONTROL_PERIOD
 from robots.robotarium import MOST_ROBOTS
+from robots.testbed import separation
 from scenarios.errors import InputError
 from scenarios.experiment import Experiment
 from scenarios.schema import Scenario
 
 Real = NDArray[np.float64]
+
+ROOM_TO_ARRIVE = 0.35
+"""Metres between two axles; where robots start closer, the drive to the start of ``rps`` 2.1 may not end."""
 
 
 def start_poses(experiment: Experiment, seed: int) -> Real:
@@ -45,6 +49,18 @@ def start_poses(experiment: Experiment, seed: int) -> Real:
             f"({x:.3f}, {y:.3f}) m, expected a place on the testbed's floor"
         )
     return poses
+
+
+def crowded(poses: Real) -> str | None:
+    """A remark on the closest pair of start poses (n, 3), where the testbed may fail to bring robots there."""
+    near = separation(poses[None, :, :2])
+    if not near.distance[0] < ROOM_TO_ARRIVE:
+        return None
+    a, b = agents.numbers(near.pairs[0])
+    return (
+        f"agents {a} and {b} start {near.distance[0]:.2f} m apart; below {ROOM_TO_ARRIVE} m the Robotarium's own drive "
+        "to the start often gets stuck: try another --seed or --set agents.N.start"
+    )
 
 
 def _required(scenario: Scenario) -> list[tuple[str, object, object]]:

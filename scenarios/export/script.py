@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from formation import AngleLaw, agents
 from robots import GTERNAL
 from robots.model import CONTROL_PERIOD
-from robots.safety.certificate import BARRIER_GAIN, SAFETY_RADIUS
+from robots.safety.certificate import BARRIER_GAIN, BOUNDARY_MARGIN, SAFETY_RADIUS
 from scenarios.errors import InputError
 from scenarios.experiment import Experiment
 from scenarios.export.portable import start_poses
@@ -18,7 +18,7 @@ WIDTH = 79
 
 BRISK_GAIN = 1000.0
 """1/(m^4 s), the certificate's gain where it stands in for another filter. With its default of 100 robots approach each
-other so slowly that `shape` takes minutes; docs/robotarium.md has the figures."""
+other so slowly that `shape` does not end within four minutes; docs/robotarium.md has the figures."""
 
 _ROUNDING = 1e-9  # a wheel commanded at exactly its limit trips the testbed's check by rounding
 
@@ -148,15 +148,17 @@ def _constants(experiment: Experiment) -> str:
 
 
 def _certificate(experiment: Experiment) -> str:
+    # In the place of another filter it also keeps robots on the floor, beyond which its own default boundary lies.
     arena = experiment.arena
     substitute = experiment.scenario.safety.filter != "robotarium"
+    margin = 0.0 if substitute else BOUNDARY_MARGIN
     return _CERTIFICATE.format(
         why=f"In place of the scenario's {experiment.scenario.safety.filter} filter"
         if substitute
         else "As in the scenario",
         radius=SAFETY_RADIUS,
         gain=BRISK_GAIN if substitute else BARRIER_GAIN,
-        boundary=[*arena.x, *arena.y],
+        boundary=[x + side * margin for x, side in zip((*arena.x, *arena.y), (-1, 1, -1, 1), strict=True)],
     )
 
 

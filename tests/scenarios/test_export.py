@@ -17,6 +17,7 @@ from robots.robotarium import Robotarium, create_si_barrier_certificate_with_bou
 from scenarios.cli import main
 from scenarios.errors import InputError
 from scenarios.experiment import Experiment, open_experiment
+from scenarios.export.portable import crowded, start_poses
 from scenarios.export.script import prose, quoted, script
 from scenarios.simulation import simulate
 
@@ -206,6 +207,12 @@ def test_obstacles_and_starts_off_the_floor_are_refused(varied: Callable[..., Ex
         script(open_experiment("shape", ("agents.2.start=[-1.7, 0.0]",)))
 
 
+def test_starts_without_room_to_arrive_are_remarked_on() -> None:
+    crowd, room = (start_poses(open_experiment(name), 0) for name in ("shape", "maneuver-testbed"))
+    assert "agents 1 and 4 start 0.30 m apart" in (crowded(crowd) or "")
+    assert crowded(room) is None
+
+
 def test_export_prints_or_writes_and_replaces_nothing_unasked(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -219,17 +226,17 @@ def test_export_prints_or_writes_and_replaces_nothing_unasked(
         return (code, *capsys.readouterr())
 
     place = tmp_path / "new" / "shape.py"
-    code, printed, _ = export("shape", "--seed", "2")
+    code, printed, remark = export("shape", "--seed", "2")
     assert code == 0
     assert printed == script(open_experiment("shape"), 2)
-    assert export("shape", "--seed", "2", "--out", str(place)) == (0, "", "")
+    assert export("shape", "--seed", "2", "--out", str(place)) == (0, "", remark)
     assert place.read_text(encoding="utf-8") == printed
     place.write_text("mine", encoding="utf-8")
     code, _, problem = export("shape", "--out", str(place))
     assert code == 2
     assert "--force" in problem
     assert place.read_text(encoding="utf-8") == "mine"
-    assert export("shape", "--seed", "2", "--out", str(place), "--force") == (0, "", "")
+    assert export("shape", "--seed", "2", "--out", str(place), "--force") == (0, "", remark)
     assert place.read_text(encoding="utf-8") == printed
     code, _, problem = export("obstacles", "--out", str(tmp_path / "obstacles.py"))
     assert code == 2
