@@ -158,7 +158,7 @@ def _certificate(experiment: Experiment) -> str:
         else "As in the scenario",
         radius=SAFETY_RADIUS,
         gain=BRISK_GAIN if substitute else BARRIER_GAIN,
-        boundary=[x + side * margin for x, side in zip((*arena.x, *arena.y), (-1, 1, -1, 1), strict=True)],
+        boundary=[round(x + side * margin, 9) for x, side in zip((*arena.x, *arena.y), (-1, 1, -1, 1), strict=True)],
     )
 
 
