@@ -16,10 +16,6 @@ from scenarios.export.portable import start_poses
 WIDTH = 79
 """Columns of a line, PEP 8."""
 
-BRISK_GAIN = 1000.0
-"""1/(m^4 s), the certificate's gain where it stands in for another filter. With its default of 100 robots approach each
-other so slowly that `shape` does not end within four minutes; docs/robotarium.md has the figures."""
-
 _ROUNDING = 1e-9  # a wheel commanded at exactly its limit trips the testbed's check by rounding
 
 
@@ -157,7 +153,7 @@ def _certificate(experiment: Experiment) -> str:
         if substitute
         else "As in the scenario",
         radius=SAFETY_RADIUS,
-        gain=BRISK_GAIN if substitute else BARRIER_GAIN,
+        gain=BARRIER_GAIN,
         boundary=[round(x + side * margin, 9) for x, side in zip((*arena.x, *arena.y), (-1, 1, -1, 1), strict=True)],
     )
 
