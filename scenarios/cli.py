@@ -327,12 +327,16 @@ def export(
     from scenarios.export.portable import crowded, start_poses
     from scenarios.export.script import script
     from scenarios.files import write_whole
+    from scenarios.misfits import misfits
 
     if safety is not None:
         changes = (*changes, f'safety.filter="{safety}"')
     experiment = open_experiment(scenario, changes, duration)
     text = script(experiment, seed)
+    remarks = [f"does not fit: {misfit}" for misfit in misfits(experiment, experiment.initial_points(seed))]
     if (remark := crowded(start_poses(experiment, seed))) is not None:
+        remarks.append(remark)
+    for remark in remarks:
         click.echo(f"note: {remark}", err=True)
     if out is None:
         click.echo(text, nl=False)

@@ -12,6 +12,7 @@ from formation import agents, collision_margins, decay_rates, end_similarity
 from scenarios.experiment import Experiment
 from scenarios.forecast import NEAR, PhaseForecast, forecast
 from scenarios.laws import COMPASS_BIAS_DEG, Share
+from scenarios.misfits import misfits
 from scenarios.terminal import new_table
 from scenarios.tracking import predicted_late_rates
 
@@ -30,6 +31,8 @@ def print_experiment(console: Console, experiment: Experiment, seed: int) -> Non
     _print_agents(console, experiment, start, predicted[-1].end)
     if experiment.predicted:
         _print_forecast(console, experiment, predicted)
+        for misfit in misfits(experiment, start):
+            console.print(f"does not fit: {escape(misfit)}", style="bold")
     else:
         console.print(f"\n{NO_PREDICTION}")
     table = new_table("angle", "target (deg)")
