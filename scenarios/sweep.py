@@ -146,12 +146,14 @@ class Summary:
     Attributes:
         runs: their number.
         converged, accepted: shares of the runs.
+        missed: seeds of the runs that did not converge.
         quantiles: at :data:`QUANTILES`, by column; of the runs that have one; None where none has.
     """
 
     runs: int
     converged: Share
     accepted: Share
+    missed: tuple[int, ...]
     quantiles: dict[str, tuple[float, ...] | None]
 
 
@@ -306,5 +308,6 @@ def summarise(rows: Sequence[Row]) -> Summary:
         runs=len(rows),
         converged=Share.of(sum(row.outcome == "converged" for row in rows), len(rows)),
         accepted=Share.of(sum(row.accepted for row in rows), len(rows)),
+        missed=tuple(row.seed for row in rows if row.outcome != "converged"),
         quantiles=quantiles,
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -25,13 +26,36 @@ IN_A_LINE = {
 """What a combination's line shows: title, quantile and format."""
 
 
+MISSED_SHOWN = 10
+"""Seeds of runs that did not converge that a line has room for."""
+
+
 def print_sweep(console: Console, study: Study, summaries: Sequence[Summary], folder: Path) -> None:
     """What the rows say together, and where they are."""
     if study.variations:
         _print_combinations(console, study, summaries)
     else:
         _print_summary(console, summaries[0])
+    _print_missed(console, study, summaries)
     console.print(f"rows: {escape(str(folder / ROWS))}")
+
+
+def _print_missed(console: Console, study: Study, summaries: Sequence[Summary]) -> None:
+    """Which runs did not converge, and the command that shows the first of them."""
+    example = None
+    for combination, summary in zip(study.combinations, summaries, strict=True):
+        if not summary.missed:
+            continue
+        where = f" with {', '.join(combination.changes)}" if combination.changes else ""
+        seeds = ", ".join(map(str, summary.missed[:MISSED_SHOWN]))
+        more = len(summary.missed) - MISSED_SHOWN
+        console.print(f"not converged{escape(where)}: seeds {seeds}{f' and {more} more' if more > 0 else ''}")
+        if example is None:
+            changes = [text for change in (*study.changes, *combination.changes) for text in ("--set", change)]
+            seed = str(summary.missed[0])
+            example = shlex.join(["formation", "run", combination.file.path, "--seed", seed, *changes])
+    if example is not None:
+        console.print(f"to see the first: {escape(example)}")
 
 
 def _print_combinations(console: Console, study: Study, summaries: Sequence[Summary]) -> None:

@@ -1,8 +1,10 @@
 """The command line as a hostile user knows it: one clear line on stderr, the right exit code, nothing half-written."""
 
+import csv
 import json
 import os
 import resource
+import shlex
 import signal
 import subprocess
 import sys
@@ -257,6 +259,20 @@ def test_every_key_of_a_scenario_misspelt_by_one_letter_is_offered_back(cli: Cli
         (tmp_path / "mine.toml").write_text(misspelt, encoding="utf-8")
         refused(cli("show", "mine.toml"))
         refused(cli("show", "shape", *sets(f"{key}x=1")), f"unknown key, did you mean '{key}'?")
+
+
+def test_a_sweep_names_the_seeds_that_miss_and_prints_the_command_that_runs_the_first(cli: Cli, tmp_path: Path) -> None:
+    settings = ("--plant", "saturated", "--set", "safety.filter=none", "--set", "duration_s=14.4")
+    answer = cli("sweep", "shape", "--seeds", "0:14", *settings, "--out", "sweep")
+    with (tmp_path / "sweep" / "rows.csv").open(encoding="utf-8") as file:
+        missed = [row["seed"] for row in csv.DictReader(file) if row["outcome"] != "converged"]
+    assert 0 < len(missed) < 10
+    assert f"not converged: seeds {', '.join(missed)}\n" in answer.out
+    (command,) = [line.split(": ", 1)[1] for line in answer.out.splitlines() if line.startswith("to see the first: ")]
+    formation, *arguments = shlex.split(command)
+    again = cli(*arguments, "--no-recording", "--out", "run")
+    assert (formation, again.code) == ("formation", MISSED)
+    assert json.loads((tmp_path / "run" / "result.json").read_text(encoding="utf-8"))["seed"] == int(missed[0])
 
 
 def test_output_that_cannot_be_written_is_refused_before_the_run(cli: Cli, tmp_path: Path) -> None:

@@ -197,7 +197,7 @@ def test_a_study_is_the_sweeps_of_its_combinations_one_after_another(tmp_path: P
             found = together.pop(0)
             assert found.pop("changes") == list(changes)
             assert found == {key: alone[key] for key in found}
-            assert {"runs", "converged", "accepted", "quantiles", "scenario_sha256"} == set(found)
+            assert {"runs", "converged", "accepted", "missed", "quantiles", "scenario_sha256"} == set(found)
             for row in rows_in(tmp_path / "alone" / ROWS):
                 varied = study.pop(0)
                 assert (varied.pop("plant.name"), varied.pop("robot.projection_distance_m")) == (plant, distance)
