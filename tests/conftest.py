@@ -1,8 +1,9 @@
 """What all tests share: hypothesis settings, scenarios made from the library's, and targets for benchmarks."""
 
+import time
 import tomllib
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, TypeVar
 
 import hypothesis
 import numpy as np
@@ -17,6 +18,15 @@ hypothesis.settings.register_profile("project", deadline=None, derandomize=True,
 hypothesis.settings.load_profile("project")
 
 MEASURED = pytest.StashKey[list[tuple[str, str, str, bool]]]()
+
+
+Seen = TypeVar("Seen")
+
+TIME_ENOUGH = 60.0
+"""Seconds of a busy machine after which what has not happened counts as never happening."""
+
+POLL = 0.05
+"""Seconds between two looks."""
 
 
 @pytest.fixture(scope="session")
@@ -54,6 +64,19 @@ def moving(varied: Callable[..., Experiment]) -> Callable[[str], Experiment]:
         )
 
     return make
+
+
+@pytest.fixture
+def eventually() -> Callable[[Callable[[], Seen], Seen], Seen]:
+    """Looks at what another process or thread changes until it is as expected, or has had time enough; what it was."""
+
+    def wait(look: Callable[[], Seen], expected: Seen) -> Seen:
+        deadline = time.monotonic() + TIME_ENOUGH
+        while (seen := look()) != expected and time.monotonic() < deadline:
+            time.sleep(POLL)
+        return seen
+
+    return wait
 
 
 @pytest.fixture(scope="session")

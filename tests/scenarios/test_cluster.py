@@ -157,7 +157,9 @@ def test_errors_of_a_task_arrive_as_they_are(local: Local) -> None:
 
 
 def test_an_interrupt_drops_what_is_queued_and_keeps_the_finished_rows(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    eventually: Callable[[Callable[[], list[str]], list[str]], list[str]],
 ) -> None:
     begun = []
     simulate = sys.modules["scenarios.sweep"].simulate
@@ -173,7 +175,7 @@ def test_an_interrupt_drops_what_is_queued_and_keeps_the_finished_rows(
     with in_threads(1) as made:
         with pytest.raises(KeyboardInterrupt), cluster.connected(made.scheduler_address) as run_all:
             sweep(study, tmp_path, run_all, interrupt)
-        assert [name for name in made.scheduler.clients if name.startswith("Client")] == []
+        assert eventually(lambda: [name for name in made.scheduler.clients if name.startswith("Client")], []) == []
     assert len((tmp_path / PARTIAL).read_text(encoding="utf-8").splitlines()) == 1 + 2
     assert not (tmp_path / ROWS).exists()
     assert len(begun) < 100
