@@ -8,6 +8,7 @@ its output, and ends when its input does: with the run, however that ends.
 from __future__ import annotations
 
 import errno
+import gc
 import os
 import subprocess
 import sys
@@ -57,6 +58,7 @@ class Encoder:
 
 def main() -> None:
     """Get ready, read the name of a run folder, write its recording."""
+    gc.disable()  # what it makes is needed until it ends, so that searching for garbage is time lost
     from scenarios.recording.encode import encode_run
 
     if folder := sys.stdin.buffer.read():
