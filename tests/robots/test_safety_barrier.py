@@ -123,6 +123,31 @@ def test_the_certificate_holds_two_robots_by_its_published_equation() -> None:
     headings = np.array([[1.0, 0.0], [1.0, 0.0]])
     certificate = RobotariumCertificate((2,), ROBOTARIUM_FLOOR)
     u = certificate.filter(points, headings, np.array([[0.2, 0.0], [-0.2, 0.0]]), np.zeros((2, 2)), PERIOD)
-    h = 0.22**2 - 0.17**2
+    h = 0.22**2 - 0.15**2
     assert 2.0 * 0.22 * (u[0, 0] - u[1, 0]) == pytest.approx(100.0 * h**3)
     np.testing.assert_allclose(u[:, 1], 0.0, atol=1e-12)
+
+
+def test_the_certificate_slows_a_robot_at_the_boundary_by_its_published_equation() -> None:
+    points, still = np.array([[1.55, 0.0]]), np.zeros((1, 2))
+    u = RobotariumCertificate((1,), ROBOTARIUM_FLOOR).filter(
+        points, np.array([[1.0, 0.0]]), np.array([[0.1, 0.05]]), still, PERIOD
+    )
+    np.testing.assert_allclose(u, [[0.4 * 100.0 * (1.7 - 0.15 / 2.0 - 1.55) ** 3, 0.05]], atol=1e-12)
+
+
+@given(direction=st.floats(-np.pi, np.pi), speed=st.floats(0.0, 2.0))
+def test_the_certificate_keeps_a_free_robot_in_the_published_octagon(direction: float, speed: float) -> None:
+    wish = speed * np.array([[np.cos(direction), np.sin(direction)]])
+    u = RobotariumCertificate((1,), ROBOTARIUM_FLOOR).filter(
+        np.zeros((1, 2)), np.array([[1.0, 0.0]]), wish, np.zeros((1, 2)), PERIOD
+    )
+    limit, normals = 0.2 * np.cos(np.pi / 8.0), np.arange(8) * np.pi / 4.0
+    along = np.stack([np.cos(normals), np.sin(normals)], axis=1)
+    assert (along @ u[0] <= limit + 1e-9).all()
+    # The nearest: what is cut off lies along the sides that hold the robot back.
+    cut = (wish - u)[0]
+    if (along @ wish[0] <= limit).all():
+        np.testing.assert_allclose(cut, 0.0, atol=1e-9)
+    else:
+        assert (cut @ (0.2 * np.stack([np.cos(normals + np.pi / 8), np.sin(normals + np.pi / 8)]) - u.T) <= 1e-9).all()
