@@ -53,7 +53,7 @@ figures: $(STAMP) ## draw the figures of the documents, the film included
 	$(BIN)/formation animate runs/figures/maneuver-testbed --speed 12 --fps 12
 	cp runs/figures/maneuver-testbed/animation.gif docs/images/maneuver-testbed.gif
 
-evidence: $(STAMP) ## the Monte Carlo evidence over all seeds, printed (about 15 minutes)
+evidence: $(STAMP) ## the Monte Carlo evidence over all seeds, printed (about 20 minutes)
 	EVIDENCE_SEEDS=500 $(BIN)/pytest tests/evidence -q -n auto --dist load -rP
 
 screenshots: $(STAMP) ## pictures of the viewer for docs/recording.md (needs xvfb, Vulkan in software, chromium)
