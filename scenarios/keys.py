@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Literal, get_args, get_origin
+from itertools import pairwise
+from typing import Any, Literal, cast, get_args, get_origin
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
@@ -24,16 +27,31 @@ class Key:
 
 def keys(table: type[BaseModel] = Scenario, prefix: str = "") -> Iterator[Key]:
     """Every key, tables before their own keys; a list of tables is written ``name[]``."""
+    meanings = docstrings(table)
     for name, field in table.model_fields.items():
         inner = _table(field.annotation)
         listed = get_origin(field.annotation) is tuple and inner is not None
         full = f"{prefix}{name}{'[]' if listed else ''}"
-        meaning = " ".join((field.description or (inner.__doc__ if inner else "") or "").split())
+        meaning = " ".join((meanings.get(name) or (inner.__doc__ if inner else "") or "").split())
         if inner is None:
             yield Key(full, _kind(field), _default(field), meaning)
         else:
             yield Key(full, "list of tables" if listed else "table", "", meaning)
             yield from keys(inner, f"{full}.")
+
+
+def docstrings(table: type[BaseModel]) -> dict[str, str]:
+    """The docstring below each attribute of a table, by name; attributes without one are left out."""
+    (definition,) = ast.parse(inspect.getsource(table)).body
+    return {
+        attribute.target.id: below.value.value
+        for attribute, below in pairwise(cast(ast.ClassDef, definition).body)
+        if isinstance(attribute, ast.AnnAssign)
+        and isinstance(attribute.target, ast.Name)
+        and isinstance(below, ast.Expr)
+        and isinstance(below.value, ast.Constant)
+        and isinstance(below.value.value, str)
+    }
 
 
 def markdown() -> str:

@@ -23,7 +23,9 @@ Vector = tuple[Number, Number]
 class Table(BaseModel):
     """A table of the file: no unknown keys, no change after validation."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    # What the keys mean stands in their docstrings; `scenarios.keys` reads them when asked. Were they pydantic's, every
+    # command would parse this file for each of its tables. Deferred, tables are built once, as parts of a whole.
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
 class AgentTable(Table):
