@@ -24,7 +24,7 @@ from robots.drive import Saturation
 from robots.model import RobotModel
 from robots.nid import NearIdentityDiffeomorphism
 from robots.worlds.kinematic import arc_chord
-from robots.worlds.protocol import NOTHING, Controller, Real
+from robots.worlds.protocol import NOTHING, Controller, Index, Real
 
 SUBSTEPS = 4
 """Solver steps per control period; keeps the deepest overlap of two chassis near 2 mm."""
@@ -74,6 +74,7 @@ class Contact:
         self._command = np.zeros((2 * n + 1, 3))
         self._command_buffer = batch.Buffer()
         self._command_buffer.set_float_buf(self._command)
+        self._untouched = np.full(n, NOTHING)
         self._observe()
 
     def step(self, controller: Controller, period: float) -> None:
@@ -106,13 +107,18 @@ class Contact:
         self.points = axle + self._l * self.headings
         self._arbiters.clear()
         batch.get_space_arbiters(self.space, _BODIES, self._arbiters)
-        self.contacts = np.full(self._n, NOTHING)
         bodies = memoryview(self._arbiters.int_buf()).cast("P")
-        for pair in zip(bodies[::2], bodies[1::2], strict=True):
-            rows = [self._row_of.get(body, self._n) for body in pair]
-            for row, other in (rows, reversed(rows)):
-                if row < self._n and (self.contacts[row] == NOTHING or other < self.contacts[row]):
-                    self.contacts[row] = other
+        self.contacts = self._touched(bodies.tolist()) if len(bodies) else self._untouched
+
+    def _touched(self, bodies: list[int]) -> Index:
+        """(n,) whom each robot touches, from the bodies of all contacts, two of each."""
+        n, rows = self._n, [self._row_of.get(body, self._n) for body in bodies]  # n: of walls and obstacles
+        first = [n + 1] * (n + 1)
+        for one, other in zip(rows[::2], rows[1::2], strict=True):
+            first[one] = min(first[one], other)
+            first[other] = min(first[other], one)
+        touched = np.array(first[:n])
+        return np.where(touched > n, NOTHING, touched)
 
 
 def _space(poses: Real, robot: RobotModel, arena: Arena | None) -> pymunk.Space:
