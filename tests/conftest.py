@@ -1,8 +1,10 @@
 """What all tests share: hypothesis settings, scenarios made from the library's, and targets for benchmarks."""
 
+import sys
 import time
 import tomllib
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any, TypeVar
 
 import hypothesis
@@ -10,6 +12,7 @@ import numpy as np
 import pytest
 
 from robots.worlds import NOTHING
+from scenarios.cli import DONE, main
 from scenarios.experiment import Experiment, build, open_experiment
 from scenarios.load import LIBRARY, ScenarioFile, validate
 from scenarios.trajectory import Trajectory
@@ -64,6 +67,26 @@ def moving(varied: Callable[..., Experiment]) -> Callable[[str], Experiment]:
         )
 
     return make
+
+
+@pytest.fixture
+def cli(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Callable[..., tuple[int, str, str]]:
+    """Runs the command line in this process, in an empty folder: exit code, stdout, stderr."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("COLUMNS", raising=False)  # test runners in parallel set it for their own terminal
+
+    def run(*arguments: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["formation", *arguments])
+        code = DONE
+        try:
+            main()
+        except SystemExit as end:
+            code = end.code if isinstance(end.code, int) else DONE
+        return code, *capsys.readouterr()
+
+    return run
 
 
 @pytest.fixture

@@ -1,6 +1,5 @@
 """The audit of a scenario's law, as the command line gives it."""
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -8,7 +7,7 @@ import numpy as np
 import pytest
 
 from scenarios.audit import audit_scenario, markdown, passed
-from scenarios.cli import BAD_INPUT, DONE, MISSED, main
+from scenarios.cli import BAD_INPUT, DONE, MISSED
 from scenarios.experiment import open_experiment
 from scenarios.laws import share_reaching
 from scenarios.load import LIBRARY
@@ -33,22 +32,6 @@ Cli = Callable[..., tuple[int, str, str]]
 
 def nothing(done: int, total: int) -> None:
     """A progress bar that shows nothing."""
-
-
-@pytest.fixture
-def cli(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Cli:
-    """Runs the command line in this process: exit code, stdout, stderr."""
-
-    def run(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["formation", *arguments])
-        code = DONE
-        try:
-            main()
-        except SystemExit as end:
-            code = int(end.code or 0)
-        return code, *capsys.readouterr()
-
-    return run
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import pytest
 
 from robots import PLANTS
-from scenarios.cli import BAD_INPUT, DONE, MISSED, main
+from scenarios.cli import BAD_INPUT, DONE, MISSED
 from scenarios.load import LIBRARY, library
 
 
@@ -30,22 +30,9 @@ Cli = Callable[..., Answer]
 
 
 @pytest.fixture
-def cli(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Cli:
+def cli(cli: Callable[..., tuple[int, str, str]]) -> Cli:
     """Runs the command in an empty folder."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv("COLUMNS", raising=False)  # test runners in parallel set it for their own terminal
-
-    def run(*arguments: str) -> Answer:
-        monkeypatch.setattr(sys, "argv", ["formation", *arguments])
-        code = DONE
-        try:
-            main()
-        except SystemExit as end:
-            code = end.code if isinstance(end.code, int) else DONE
-        printed = capsys.readouterr()
-        return Answer(code, printed.out, printed.err)
-
-    return run
+    return lambda *arguments: Answer(*cli(*arguments))
 
 
 def refused(answer: Answer, *words: str) -> None:

@@ -11,7 +11,7 @@ import pytest
 from formation import AngleLaw
 from robots.worlds import NOTHING
 from scenarios import run_folder
-from scenarios.cli import BAD_INPUT, DONE, main
+from scenarios.cli import BAD_INPUT, DONE
 from scenarios.errors import InputError
 from scenarios.experiment import open_experiment
 from scenarios.forecast import forecast
@@ -82,22 +82,6 @@ def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., str]:
         return "./mine.toml"
 
     return write
-
-
-@pytest.fixture
-def cli(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Cli:
-    """Runs the command line in this process: exit code, stdout, stderr."""
-
-    def run(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["formation", *arguments])
-        code = DONE
-        try:
-            main()
-        except SystemExit as end:
-            code = int(end.code or 0)
-        return code, *capsys.readouterr()
-
-    return run
 
 
 # What it does
