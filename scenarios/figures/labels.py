@@ -19,6 +19,8 @@ _RINGS = (1.0, 1.5, 2.2)
 _ENOUGH, _STEP_BACK = 0.85, 0.25
 """Clearance that counts as enough, and what going one ring out must gain, in heights of the type."""
 
+_DENSE, _RASTER = 100_000, 0.5
+"""Occupied points from which on they are merged where they are nearer than this, points of type."""
 
 _LEGIBLE = 0.35
 """Clearance, in heights of the type, below which a label on crowded axes is left out."""
@@ -45,6 +47,9 @@ class Labels:
         self._scale = points_per_metre(axes)
         finite = occupied.reshape(-1, 2)
         points = finite[np.isfinite(finite).all(axis=1)] * self._scale
+        if len(points) > _DENSE:
+            points = np.unique(np.round(points / _RASTER).astype(np.int32).view(np.int64)).view(np.int32)
+            points = _RASTER * points.reshape(-1, 2)
         self._occupied = points[np.argsort(points[:, 0])]  # by x: a thousand trails are searched for every label
         self._labels = np.empty((0, 2))
 
