@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import shlex
+from collections.abc import Sequence
 
 import numpy as np
 from rich.console import Console
@@ -12,8 +13,9 @@ from formation import agents
 from formation.audit import Finding, Subject, audit
 from scenarios.comparison.documents import markdown_table
 from scenarios.experiment import Experiment, open_experiment
-from scenarios.laws import COMPASS_BIAS_DEG, DURATION, RANDOM_START, share_reaching
+from scenarios.laws import COMPASS_BIAS_DEG, DURATION, RANDOM_START, Progress, part_of, share_reaching
 from scenarios.own_law import OwnLaw
+from scenarios.schema import Scenario
 from scenarios.terminal import new_table, print_table
 
 COLUMNS = ("check", "verdict", "measured", "remark")
@@ -26,7 +28,7 @@ ROUNDING = 1e-9
 
 
 def audit_scenario(
-    source: str, changes: tuple[str, ...], starts: int, on_progress: Callable[[int, int], None]
+    source: str, changes: tuple[str, ...], starts: int, on_progress: Progress
 ) -> tuple[Experiment, list[Finding]]:
     """The experiment of a scenario, and all findings about its law.
 
@@ -46,11 +48,8 @@ def audit_scenario(
     findings.append(_start_speed(experiment))
     biases = [0.0, COMPASS_BIAS_DEG] if experiment.law.needs_compass else [0.0]
     for done, bias in enumerate(biases if starts else []):
-
-        def advance(period: int, periods: int, done: int = done) -> None:
-            on_progress(done * periods + period, len(biases) * periods)
-
-        findings.append(_convergence(source, changes, bias, starts, advance))
+        advance = part_of(on_progress, done, len(biases))
+        findings.append(_convergence(source, changes, experiment.scenario, bias, starts, advance))
     return experiment, findings
 
 
@@ -70,10 +69,9 @@ def _start_speed(experiment: Experiment) -> Finding:
 
 
 def _convergence(
-    source: str, changes: tuple[str, ...], bias: float, starts: int, advance: Callable[[int, int], None]
+    source: str, changes: tuple[str, ...], scenario: Scenario, bias: float, starts: int, advance: Progress
 ) -> Finding:
     """The share of random starts from which ideal single integrators reach the scenario's goal."""
-    scenario = open_experiment(source, changes).scenario
     ideal = ["plant.name=single_integrator", "sensor.delay_periods=0", f"sensor.compass_bias_deg={bias}"]
     places = RANDOM_START if scenario.random_start is None else ()
     duration = None if scenario.duration_s is None else max(DURATION, scenario.duration_s)
@@ -97,7 +95,8 @@ def markdown(
     experiment: Experiment, findings: Sequence[Finding], source: str, changes: tuple[str, ...], starts: int
 ) -> str:
     """The audit as a Markdown page, with the command that makes it."""
-    command = " ".join(["formation audit", source, *(f"--set {change}" for change in changes), f"--starts {starts}"])
+    settings = [text for change in changes for text in ("--set", change)]
+    command = shlex.join(["formation", "audit", source, *settings, "--starts", str(starts)])
     lines = [f"# The law of `{experiment.file.name}`, audited", "", f"By `{command}`.", ""]
     lines += markdown_table(COLUMNS, rows(findings))
     lines += ["", f"The law {'passes' if passed(findings) else 'fails'}. A note is told, not demanded."]

@@ -10,6 +10,9 @@ import numpy as np
 from scenarios.experiment import Experiment, open_experiment
 from scenarios.simulation import simulate
 
+Progress = Callable[[int, int], None]
+"""Called with the number of control periods done and of all."""
+
 SCENARIO = "law-displacement"
 """The comparison's robots: its target has a scale and an orientation, so every family can be asked for it."""
 
@@ -56,21 +59,25 @@ class Share:
     biased: float
 
 
-def compare(starts: int, on_progress: Callable[[int, int], None] | None = None) -> list[Share]:
+def compare(starts: int, on_progress: Progress | None = None) -> list[Share]:
     """Run every law from the same ``starts`` random starts as ideal single integrators."""
     cells = [(law, bias) for law in LAWS for bias in (0.0, COMPASS_BIAS_DEG)]
     shares = []
     for done, (law, bias) in enumerate(cells):
-
-        def advance(period: int, periods: int, done: int = done) -> None:
-            if on_progress is not None:
-                on_progress(done * periods + period, len(cells) * periods)
-
-        shares.append(_share(law, bias, starts, advance))
+        shares.append(_share(law, bias, starts, part_of(on_progress or _unwatched, done, len(cells))))
     return [Share(law, *pair) for law, pair in zip(LAWS, zip(shares[::2], shares[1::2], strict=True), strict=True)]
 
 
-def _share(law: Law, bias: float, starts: int, advance: Callable[[int, int], None]) -> float:
+def part_of(on_progress: Progress, done: int, parts: int) -> Progress:
+    """The progress of one of equal ``parts``, after ``done`` of them, told as progress of the whole."""
+    return lambda period, periods: on_progress(done * periods + period, parts * periods)
+
+
+def _unwatched(done: int, total: int) -> None:
+    """Nobody looks."""
+
+
+def _share(law: Law, bias: float, starts: int, advance: Progress) -> float:
     changes = (
         f"law.name={law.name}",
         f"sensor.compass_bias_deg={bias}",
@@ -81,7 +88,7 @@ def _share(law: Law, bias: float, starts: int, advance: Callable[[int, int], Non
 
 
 @np.errstate(over="ignore", invalid="ignore")  # a diverged run is an outcome, not a warning
-def share_reaching(experiment: Experiment, starts: int, on_period: Callable[[int, int], None]) -> float:
+def share_reaching(experiment: Experiment, starts: int, on_period: Progress) -> float:
     """The share of the runs with seeds from 0 that end below the goal, on a plant without contact.
 
     Args:

@@ -5,6 +5,7 @@ import subprocess
 import sys
 import types
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robots.robotarium import Robotarium, create_si_barrier_certificate_with_boundary
-from scenarios.cli import main
 from scenarios.errors import InputError
 from scenarios.experiment import Experiment, open_experiment
 from scenarios.export.portable import crowded, start_poses
@@ -214,17 +214,9 @@ def test_starts_without_room_to_arrive_are_remarked_on() -> None:
 
 
 def test_export_prints_or_writes_and_replaces_nothing_unasked(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, cli: Callable[..., tuple[int, str, str]]
 ) -> None:
-    def export(*arguments: str) -> tuple[object, str, str]:
-        monkeypatch.setattr(sys, "argv", ["formation", "export", *arguments])
-        code: object = 0
-        try:
-            main()
-        except SystemExit as end:
-            code = end.code
-        return (code, *capsys.readouterr())
-
+    export = partial(cli, "export")
     place = tmp_path / "new" / "shape.py"
     code, printed, remark = export("shape", "--seed", "2")
     assert code == 0

@@ -6,7 +6,7 @@ import errno
 import io
 import json
 import shutil
-import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -14,11 +14,13 @@ import pytest
 from rich.console import Console
 
 from scenarios import files, run_folder
-from scenarios.cli import BAD_INPUT, main
+from scenarios.cli import BAD_INPUT, DONE
 from scenarios.errors import InputError
 from scenarios.experiment import open_experiment
 from scenarios.run import run_to_folder
 from scenarios.run_folder import read
+
+Cli = Callable[..., tuple[int, str, str]]
 
 
 @pytest.fixture(scope="module")
@@ -34,18 +36,9 @@ def copy(finished: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(finished, tmp_path / "run"))
 
 
-def call(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
-    monkeypatch.setattr(sys, "argv", ["formation", *arguments])
-    try:
-        main()
-    except SystemExit as ending:
-        return int(ending.code or 0)
-    return 0
-
-
-def refused(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
-    assert call(monkeypatch, *arguments) == BAD_INPUT
-    message = capsys.readouterr().err
+def refused(cli: Cli, *arguments: str) -> str:
+    code, _, message = cli(*arguments)
+    assert code == BAD_INPUT
     assert message.startswith("formation: ")
     assert message.count("\n") == 1
     return message
@@ -65,24 +58,22 @@ def test_a_run_leaves_its_overview_as_a_picture(finished: Path) -> None:
     assert (finished / "figure-motion.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_plot_draws_what_the_run_drew(finished: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert call(monkeypatch, "plot", str(finished), "--out", str(tmp_path), "--format", "png", "--format", "svg") == 0
+def test_plot_draws_what_the_run_drew(finished: Path, tmp_path: Path, cli: Cli) -> None:
+    assert cli("plot", str(finished), "--out", str(tmp_path), "--format", "png", "--format", "svg")[0] == DONE
     names = {path.name for path in tmp_path.iterdir()}
     assert names == {f"figure-{n}.{f}" for n in ("graph", "motion", "decay", "separation") for f in ("png", "svg")}
     assert (tmp_path / "figure-motion.png").read_bytes() == (finished / "figure-motion.png").read_bytes()
 
 
-def test_animate_writes_a_film_into_the_run_folder(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert call(monkeypatch, "animate", str(copy), "--speed", "20", "--fps", "2") == 0
+def test_animate_writes_a_film_into_the_run_folder(copy: Path, cli: Cli) -> None:
+    assert cli("animate", str(copy), "--speed", "20", "--fps", "2")[0] == DONE
     assert (copy / "animation.gif").read_bytes().startswith(b"GIF8")
 
 
 @pytest.mark.parametrize("command", ["plot", "animate"])
-def test_a_missing_folder_is_one_line(
-    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert "no such run folder" in refused(monkeypatch, capsys, command, str(tmp_path / "absent"))
-    assert "not a run folder" in refused(monkeypatch, capsys, command, str(tmp_path))
+def test_a_missing_folder_is_one_line(command: str, tmp_path: Path, cli: Cli) -> None:
+    assert "no such run folder" in refused(cli, command, str(tmp_path / "absent"))
+    assert "not a run folder" in refused(cli, command, str(tmp_path))
 
 
 @pytest.mark.parametrize(
@@ -96,20 +87,16 @@ def test_a_missing_folder_is_one_line(
         ("scenario.json", b"\xff"),
     ],
 )
-def test_a_damaged_file_is_named_in_one_line(
-    name: str, content: bytes, copy: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_damaged_file_is_named_in_one_line(name: str, content: bytes, copy: Path, cli: Cli) -> None:
     (copy / name).write_bytes(content)
-    assert name in refused(monkeypatch, capsys, "plot", str(copy))
+    assert name in refused(cli, "plot", str(copy))
 
 
 @pytest.mark.parametrize("part", [0.2, 0.6, 0.99])
-def test_a_truncated_trajectory_is_named_in_one_line(
-    part: float, copy: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_truncated_trajectory_is_named_in_one_line(part: float, copy: Path, cli: Cli) -> None:
     path = copy / run_folder.TRAJECTORY
     path.write_bytes(path.read_bytes()[: int(part * path.stat().st_size)])
-    assert run_folder.TRAJECTORY in refused(monkeypatch, capsys, "plot", str(copy))
+    assert run_folder.TRAJECTORY in refused(cli, "plot", str(copy))
 
 
 def test_a_trajectory_of_another_number_of_robots_is_refused(copy: Path) -> None:
@@ -128,19 +115,15 @@ def test_a_missing_scenario_is_named(copy: Path) -> None:
         read(copy)
 
 
-def test_an_unknown_format_is_one_line(
-    finished: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert "bmp" in refused(monkeypatch, capsys, "plot", str(finished), "--format", "bmp")
-    assert "avi" in refused(monkeypatch, capsys, "animate", str(finished), "--format", "avi")
+def test_an_unknown_format_is_one_line(finished: Path, cli: Cli) -> None:
+    assert "bmp" in refused(cli, "plot", str(finished), "--format", "bmp")
+    assert "avi" in refused(cli, "animate", str(finished), "--format", "avi")
 
 
-def test_a_place_that_cannot_be_written_is_one_line(
-    finished: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_place_that_cannot_be_written_is_one_line(finished: Path, tmp_path: Path, cli: Cli) -> None:
     (tmp_path / "file").write_text("in the way")
     for command in ("plot", "animate"):
-        message = refused(monkeypatch, capsys, command, str(finished), "--out", str(tmp_path / "file" / "x"))
+        message = refused(cli, command, str(finished), "--out", str(tmp_path / "file" / "x"))
         assert "cannot be written" in message
 
 
@@ -149,11 +132,11 @@ def full_disk(*_: object) -> None:
 
 
 def test_a_full_disk_is_one_line_and_leaves_older_figures_whole(
-    copy: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    copy: Path, monkeypatch: pytest.MonkeyPatch, cli: Cli
 ) -> None:
     before = {path.name: path.read_bytes() for path in copy.iterdir()}
     monkeypatch.setattr(files.Path, "write_bytes", full_disk)
-    assert "No space left on device" in refused(monkeypatch, capsys, "plot", str(copy))
+    assert "No space left on device" in refused(cli, "plot", str(copy))
     assert {path.name: path.read_bytes() for path in copy.iterdir()} == before
 
 

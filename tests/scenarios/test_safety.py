@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +10,6 @@ import pytest
 
 from robots import GTERNAL
 from robots.testbed import collision_centres, separation
-from scenarios.cli import main
 from scenarios.errors import InputError
 from scenarios.experiment import open_experiment
 from scenarios.metrics import measure
@@ -167,24 +167,18 @@ def test_the_literal_replay_still_brings_the_robots_together() -> None:
     ],
 )
 def test_bad_input_is_refused_in_one_line_with_exit_code_2(
-    change: str, said: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    change: str, said: str, cli: Callable[..., tuple[int, str, str]]
 ) -> None:
-    monkeypatch.setattr("sys.argv", ["formation", "show", "shape", "--set", change])
-    with pytest.raises(SystemExit) as exit_:
-        main()
-    assert exit_.value.code == 2
-    message = capsys.readouterr().err
+    code, _, message = cli("show", "shape", "--set", change)
+    assert code == 2
     assert said in message
     assert message.count("\n") == 1
 
 
-def test_a_filter_for_points_is_refused(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    arguments = ["formation", "run", "shape", "--plant", "single_integrator", "--safety", "centralised"]
-    monkeypatch.setattr("sys.argv", arguments)
-    with pytest.raises(SystemExit) as exit_:
-        main()
-    assert exit_.value.code == 2
-    assert "--safety centralised: the plant single_integrator" in capsys.readouterr().err
+def test_a_filter_for_points_is_refused(cli: Callable[..., tuple[int, str, str]]) -> None:
+    code, _, message = cli("run", "shape", "--plant", "single_integrator", "--safety", "centralised")
+    assert code == 2
+    assert "--safety centralised: the plant single_integrator" in message
 
 
 def test_a_delay_of_the_continuous_plant_is_refused() -> None:
