@@ -22,7 +22,7 @@ from rps.utilities.misc import generate_random_poses
 
 import robots.robotarium
 from robots import GTERNAL
-from scenarios.experiment import open_experiment
+from scenarios.definition.experiment import open_experiment
 from scenarios.export.script import script
 
 EXAMPLES = (

@@ -22,13 +22,13 @@ from PIL import Image
 from rerun.experimental import ViewerClient
 from rich.console import Console
 
-from scenarios import run_folder
-from scenarios.experiment import open_experiment
+from scenarios.definition.experiment import open_experiment
+from scenarios.one_run import run_to_folder
 from scenarios.recording.encode import encode_pair
 from scenarios.recording.file import write
 from scenarios.recording.recorder import TIMELINE
 from scenarios.recording.viewer import LOOPBACK, executable, listening
-from scenarios.run import run_to_folder
+from scenarios.storage import run_folder
 
 SIZE = (1400, 800)
 IMAGES = Path(__file__).parent / "images"

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from rich.console import Console
 
-from scenarios import run_folder
 from scenarios.recording import file, viewer
+from scenarios.storage import run_folder
 
 
 def replay(folders: Sequence[Path], web: bool, console: Console) -> None:

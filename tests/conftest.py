@@ -13,9 +13,9 @@ import pytest
 
 from robots.worlds import NOTHING
 from scenarios.cli import DONE, main
-from scenarios.experiment import Experiment, build, open_experiment
-from scenarios.load import LIBRARY, ScenarioFile, validate
-from scenarios.trajectory import Trajectory
+from scenarios.definition.experiment import Experiment, build, open_experiment
+from scenarios.definition.load import LIBRARY, ScenarioFile, validate
+from scenarios.simulation.trajectory import Trajectory
 
 hypothesis.settings.register_profile("project", deadline=None, derandomize=True, max_examples=60)
 hypothesis.settings.load_profile("project")

@@ -10,9 +10,9 @@ from robots import GTERNAL, ROBOTARIUM_FLOOR
 from robots.model import CONTROL_PERIOD
 from robots.robotarium import MOST_ROBOTS
 from robots.testbed import separation
+from scenarios.definition.experiment import Experiment
+from scenarios.definition.schema import Scenario
 from scenarios.errors import InputError
-from scenarios.experiment import Experiment
-from scenarios.schema import Scenario
 
 Real = NDArray[np.float64]
 

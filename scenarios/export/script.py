@@ -9,8 +9,8 @@ from formation import AngleLaw, agents
 from robots import GTERNAL
 from robots.model import CONTROL_PERIOD
 from robots.safety.certificate import BARRIER_GAIN, BOUNDARY_MARGIN, SAFETY_RADIUS
+from scenarios.definition.experiment import Experiment
 from scenarios.errors import InputError
-from scenarios.experiment import Experiment
 from scenarios.export.portable import start_poses
 
 WIDTH = 79

@@ -8,15 +8,15 @@ from types import MappingProxyType
 
 from matplotlib.figure import Figure
 
-from scenarios.experiment import Experiment
+from scenarios.definition.experiment import Experiment
 from scenarios.figures.decay import decay
 from scenarios.figures.graphs import graph
 from scenarios.figures.motion import motion
 from scenarios.figures.separation import separation
 from scenarios.figures.style import print_style, render
-from scenarios.files import write_whole
-from scenarios.metrics import Metrics
-from scenarios.trajectory import Trajectory
+from scenarios.measures.metrics import Metrics
+from scenarios.simulation.trajectory import Trajectory
+from scenarios.storage.files import write_whole
 
 FIGURES = MappingProxyType({"graph": graph, "motion": motion, "decay": decay, "separation": separation})
 """Each figure by name: a function of the experiment, the trajectory and the metrics of a run."""

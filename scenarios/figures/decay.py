@@ -10,13 +10,13 @@ from matplotlib.ticker import LogLocator, NullLocator
 from numpy.typing import NDArray
 
 from formation import agents, decay_rates, end_configuration
-from scenarios.experiment import Experiment
+from scenarios.definition.experiment import Experiment
+from scenarios.figures.palette import INK, agent_colour
 from scenarios.figures.style import COLUMN, SMALL, panel, sheet
 from scenarios.figures.timelines import MANY, TIME
-from scenarios.metrics import Metrics
-from scenarios.palette import INK, agent_colour
-from scenarios.tracking import predicted_ends, predicted_late_rates
-from scenarios.trajectory import Trajectory
+from scenarios.measures.metrics import Metrics
+from scenarios.measures.tracking import predicted_ends, predicted_late_rates
+from scenarios.simulation.trajectory import Trajectory
 
 Real = NDArray[np.float64]
 

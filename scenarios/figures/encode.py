@@ -11,13 +11,13 @@ from typing import IO
 import numpy as np
 from PIL import Image
 
+from scenarios.definition.experiment import Experiment
 from scenarios.errors import InputError
-from scenarios.experiment import Experiment
 from scenarios.figures.film import Film, Pixels
 from scenarios.figures.style import print_style
-from scenarios.files import replacing
-from scenarios.metrics import Metrics
-from scenarios.trajectory import Trajectory
+from scenarios.measures.metrics import Metrics
+from scenarios.simulation.trajectory import Trajectory
+from scenarios.storage.files import replacing
 
 HOLD = 1.5
 """Seconds for which the last frame stays."""

@@ -17,14 +17,14 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from formation import agents
-from scenarios.experiment import Experiment
+from scenarios.definition.experiment import Experiment
 from scenarios.figures.floor import limits, placed, prepare, wedge
+from scenarios.figures.palette import FAINT, INK, agent_colour
 from scenarios.figures.style import SMALL, panel
 from scenarios.figures.timelines import MANY, draw_error_sum, mark_phases
-from scenarios.metrics import Metrics
-from scenarios.palette import FAINT, INK, agent_colour
-from scenarios.tracking import reference
-from scenarios.trajectory import Trajectory
+from scenarios.measures.metrics import Metrics
+from scenarios.measures.tracking import reference
+from scenarios.simulation.trajectory import Trajectory
 
 Pixels = NDArray[np.uint8]
 

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from formation import SensingGraph
 from robots import Arena, Chassis
-from scenarios.experiment import Experiment
-from scenarios.palette import FAINT, INK, agent_colour
-from scenarios.trajectory import Trajectory
+from scenarios.definition.experiment import Experiment
+from scenarios.figures.palette import FAINT, INK, agent_colour
+from scenarios.simulation.trajectory import Trajectory
 
 Real = NDArray[np.float64]
 Limits = tuple[float, float, float, float]

@@ -12,12 +12,12 @@ from matplotlib.patches import FancyArrowPatch
 from numpy.typing import NDArray
 
 from formation import agents
-from scenarios.experiment import Experiment
+from scenarios.definition.experiment import Experiment
+from scenarios.figures.palette import INK, agent_colour
 from scenarios.figures.style import COLUMN, SMALL, panel, sheet
 from scenarios.figures.timelines import MANY
-from scenarios.metrics import Metrics
-from scenarios.palette import INK, agent_colour
-from scenarios.trajectory import Trajectory
+from scenarios.measures.metrics import Metrics
+from scenarios.simulation.trajectory import Trajectory
 
 Real = NDArray[np.float64]
 

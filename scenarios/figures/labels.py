@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from scenarios.figures.palette import INK
 from scenarios.figures.style import SMALL
-from scenarios.palette import INK
 
 Real = NDArray[np.float64]
 

@@ -8,14 +8,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from formation import agents
-from scenarios.experiment import Experiment
+from scenarios.definition.experiment import Experiment
 from scenarios.figures.floor import Limits, draw_edges, draw_robots, draw_trails, limits, prepare
 from scenarios.figures.labels import Labels, points_per_metre
+from scenarios.figures.palette import INK
 from scenarios.figures.style import COLUMN, SMALL, panel, sheet
 from scenarios.figures.timelines import MANY, draw_error_sum, draw_errors, mark_phases
-from scenarios.metrics import Metrics
-from scenarios.palette import INK
-from scenarios.trajectory import Trajectory
+from scenarios.measures.metrics import Metrics
+from scenarios.simulation.trajectory import Trajectory
 
 LEFT, RIGHT = 0.44, 0.11
 SUM_HEIGHT, EACH_HEIGHT, GAP = 0.72, 0.85, 0.14

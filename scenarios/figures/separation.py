@@ -7,12 +7,12 @@ from matplotlib.figure import Figure
 
 from formation import agents
 from robots.testbed import COLLISION_DISTANCE
-from scenarios.experiment import Experiment
+from scenarios.definition.experiment import Experiment
+from scenarios.figures.palette import ALARM, INK
 from scenarios.figures.style import COLUMN, SMALL, panel, sheet
 from scenarios.figures.timelines import TIME, mark_phases
-from scenarios.metrics import Metrics
-from scenarios.palette import ALARM, INK
-from scenarios.trajectory import Trajectory
+from scenarios.measures.metrics import Metrics
+from scenarios.simulation.trajectory import Trajectory
 
 LEFT, RIGHT = 0.38, 0.11
 

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from scenarios.palette import INK
+from scenarios.figures.palette import INK
 
 COLUMN = 3.4
 """Inches; the width of one column of a two-column journal."""

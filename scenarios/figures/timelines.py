@@ -7,11 +7,11 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullLocator
 from numpy.typing import NDArray
 
-from scenarios.experiment import Experiment
+from scenarios.definition.experiment import Experiment
+from scenarios.figures.palette import FAINT, INK, agent_colour
 from scenarios.figures.style import SMALL
-from scenarios.metrics import Metrics
-from scenarios.palette import FAINT, INK, agent_colour
-from scenarios.trajectory import Trajectory
+from scenarios.measures.metrics import Metrics
+from scenarios.simulation.trajectory import Trajectory
 
 Real = NDArray[np.float64]
 

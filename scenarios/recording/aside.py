@@ -17,7 +17,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, cast
 
-from scenarios import run_folder
+from scenarios.storage import run_folder
 
 
 class Encoder:

@@ -9,14 +9,14 @@ from typing import Any, NamedTuple
 import rerun as rr
 import rerun.blueprint as rrb
 
-from scenarios.experiment import Experiment
-from scenarios.metrics import Metrics, measure
-from scenarios.recording import blueprint, style
+from scenarios.definition.experiment import Experiment
+from scenarios.measures.metrics import Metrics, measure
 from scenarios.recording.piece import whole
 from scenarios.recording.recorder import Recorder, open_stream
 from scenarios.recording.streams import send_motion, send_outcome, send_setup
-from scenarios.run_folder import Run
-from scenarios.trajectory import Trajectory
+from scenarios.recording.views import blueprint, style
+from scenarios.simulation.trajectory import Trajectory
+from scenarios.storage.run_folder import Run
 
 
 class Side(NamedTuple):

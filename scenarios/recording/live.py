@@ -12,14 +12,14 @@ from typing import Any
 
 import rerun as rr
 
-from scenarios.experiment import Experiment
-from scenarios.recording import blueprint
+from scenarios.definition.experiment import Experiment
 from scenarios.recording.encode import identity, title
 from scenarios.recording.piece import rows
 from scenarios.recording.recorder import Recorder, open_stream
 from scenarios.recording.streams import send_motion, send_outcome, send_setup
 from scenarios.recording.viewer import LOOPBACK
-from scenarios.trajectory import Trajectory
+from scenarios.recording.views import blueprint
+from scenarios.simulation.trajectory import Trajectory
 
 FRAME = 1.0 / 20.0
 """Seconds of wall-clock time between two messages to the viewer."""
@@ -65,7 +65,7 @@ class LiveView:
         self._sent = 0
 
     def __call__(self, trajectory: Trajectory, row: int) -> None:
-        """Take the newest state; see :func:`scenarios.simulation.simulate`."""
+        """Take the newest state; see :func:`scenarios.simulation.loop.simulate`."""
         if self._begin is None:
             self._begin = self._clock()
             self._stream.send_blueprint(blueprint.single(self._experiment, trajectory.points[:1], live=True))

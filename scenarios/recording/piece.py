@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.testbed import Separation, collision_centres, separation
-from scenarios.experiment import Experiment
-from scenarios.metrics import Metrics
-from scenarios.trajectory import Trajectory
+from scenarios.definition.experiment import Experiment
+from scenarios.measures.metrics import Metrics
+from scenarios.simulation.trajectory import Trajectory
 
 Real = NDArray[np.float64]
 Index = NDArray[np.intp]

@@ -8,8 +8,8 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from scenarios.recording import style
-from scenarios.recording.style import Colour
+from scenarios.recording.views import style
+from scenarios.recording.views.style import Colour
 
 Real = NDArray[np.float64]
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from scenarios.experiment import Experiment
-from scenarios.recording import plots, scene, summary, timeline
+from scenarios.definition.experiment import Experiment
 from scenarios.recording.piece import Piece
 from scenarios.recording.recorder import Recorder
+from scenarios.recording.views import plots, scene, summary, timeline
 
 SETUP: tuple[Callable[[Recorder, Experiment], None], ...] = (
     scene.floor,

@@ -8,8 +8,8 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 from formation import AngleLaw, SensingGraph, TargetFormation
 from robots import World, make_world
-from scenarios.controller import Controller
-from scenarios.experiment import Experiment
+from scenarios.definition.experiment import Experiment
+from scenarios.simulation.controller import Controller
 
 Target = Callable[[str, float, float, str], None]
 

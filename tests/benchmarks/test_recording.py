@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.experiment import Experiment, build, open_experiment
-from scenarios.load import ScenarioFile, load
-from scenarios.metrics import Metrics, measure
+from scenarios.definition.experiment import Experiment, build, open_experiment
+from scenarios.definition.load import ScenarioFile, load
+from scenarios.measures.metrics import Metrics, measure
+from scenarios.measures.result import result
 from scenarios.recording.encode import encode
 from scenarios.recording.file import write
-from scenarios.result import result
-from scenarios.simulation import simulate
-from scenarios.trajectory import Trajectory
+from scenarios.simulation.loop import simulate
+from scenarios.simulation.trajectory import Trajectory
 
 Recorded = Callable[..., Trajectory]
 

@@ -11,10 +11,10 @@ from robots import GTERNAL, Arena, NearIdentityDiffeomorphism, make_world
 from robots.obstacles import Obstacle, disc
 from robots.safety import FilterSettings, make_filter
 from robots.testbed import collision_centres, separation
-from scenarios.experiment import Experiment, open_experiment
-from scenarios.metrics import measure
-from scenarios.safety_result import deadlocks
-from scenarios.simulation import simulate
+from scenarios.definition.experiment import Experiment, open_experiment
+from scenarios.measures.metrics import measure
+from scenarios.measures.safety_result import deadlocks
+from scenarios.simulation.loop import simulate
 
 pytestmark = pytest.mark.slow
 

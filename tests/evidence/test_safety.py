@@ -14,10 +14,10 @@ import pytest
 from robots import GTERNAL
 from robots.safety import FilterSettings
 from robots.testbed import COLLISION_DISTANCE, collision_centres, separation
-from scenarios.experiment import Experiment, open_experiment
-from scenarios.metrics import measure
-from scenarios.simulation import simulate
-from scenarios.tracking import predicted_ends
+from scenarios.definition.experiment import Experiment, open_experiment
+from scenarios.measures.metrics import measure
+from scenarios.measures.tracking import predicted_ends
+from scenarios.simulation.loop import simulate
 
 SEEDS = int(os.environ.get("EVIDENCE_SEEDS", "12"))
 

@@ -37,6 +37,6 @@ def test_importing_loads_no_heavy_package(module: str) -> None:
 
 
 def test_listing_scenarios_loads_no_numpy() -> None:
-    code = "import sys, scenarios.catalogue; print('numpy' in sys.modules)"
+    code = "import sys, scenarios.report.catalogue; print('numpy' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"

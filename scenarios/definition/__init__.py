@@ -1,0 +1,4 @@
+"""From a scenario file to an :class:`~scenarios.definition.experiment.Experiment`: schema, targets, starts, own laws.
+
+Nothing here moves a robot.
+"""

@@ -1,0 +1,270 @@
+"""From a validated scenario to the objects of the theory and of the machines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from formation import (
+    AngleLaw,
+    AngleSet,
+    ComparisonLaw,
+    FormationLaw,
+    Phase,
+    SensingGraph,
+    TargetFormation,
+    VelocityEstimator,
+    agents,
+)
+from robots import GTERNAL, Arena, NearIdentityDiffeomorphism, RobotModel
+from robots import RelativePositionSensor as Sensor
+from robots.obstacles import Obstacle
+from robots.safety import FilterSettings
+from scenarios.definition.load import ScenarioFile, load
+from scenarios.definition.own_law import NotLoaded, make_own_law
+from scenarios.definition.schema import Scenario
+from scenarios.definition.starts import Starts, build_starts
+from scenarios.definition.targets import build_target
+from scenarios.errors import InputError, located
+
+Real = NDArray[np.float64]
+
+LONGEST_RUN = 1_000_000
+"""Control periods whose states are kept in memory; nine hours of the Robotarium's."""
+
+
+@dataclass(frozen=True, eq=False)
+class Experiment:
+    """Everything that a run needs, ready to use.
+
+    Attributes:
+        file: the scenario with its origin.
+        target: the target formation with its sensing graph.
+        angles: the angles that are measured and compared.
+        target_angles: (m,) their targets, radians, exact.
+        starts: the initial state, as far as the scenario fixes it.
+        phases: the maneuver, a single phase for shape control.
+        law: the formation law.
+        estimator: how agents learn v_r; None where it is broadcast.
+    """
+
+    file: ScenarioFile
+    target: TargetFormation
+    angles: AngleSet
+    target_angles: Real
+    starts: Starts
+    phases: tuple[Phase, ...]
+    law: FormationLaw
+    estimator: VelocityEstimator | None
+    sensor: Sensor
+    nid: NearIdentityDiffeomorphism
+    robot: RobotModel
+    arena: Arena
+    filter_settings: FilterSettings
+
+    @property
+    def scenario(self) -> Scenario:
+        return self.file.scenario
+
+    @property
+    def plant(self) -> str:
+        return self.scenario.plant.name
+
+    @property
+    def safety(self) -> str:
+        """The safety filter, a name of :data:`robots.safety.FILTERS`.
+
+        The single integrator is the theorem's model: points, which neither have wheels nor collide.
+        """
+        return "none" if self.plant == "single_integrator" else self.scenario.safety.filter
+
+    @property
+    def graph(self) -> SensingGraph:
+        return self.target.graph
+
+    @property
+    def n(self) -> int:
+        """Number of agents."""
+        return self.graph.n
+
+    @property
+    def goal(self) -> float:
+        """Bound on the sum of the absolute angle errors, radians."""
+        return self.scenario.goal.angle_error_sum_rad
+
+    @cached_property
+    def first_follower(self) -> str:
+        """The edge law by which agent 2 acts, a name of :data:`formation.EDGE_LAWS`.
+
+        Of an own law, the one that keeps or reaches the commanded displacement: what a reference for it is drawn from.
+        """
+        law = self.scenario.law
+        if law.name == "own":
+            return "displacement"
+        return law.first_follower if law.name == "angle" else law.name
+
+    @property
+    def predicted(self) -> bool:
+        """Whether the theory says where the run ends; it says nothing of an own law."""
+        return self.scenario.law.name != "own"
+
+    def initial_points(self, seed: int) -> Real:
+        """(n, 2) initial projected points of the run with that seed, metres."""
+        return self.starts.draw(np.random.default_rng(seed))[0]
+
+
+def open_experiment(scenario: str, changes: tuple[str, ...] = (), duration: float | None = None) -> Experiment:
+    """The experiment of a scenario's name or path, with ``--set`` changes and a shortened or lengthened run.
+
+    Raises:
+        InputError: anything in the scenario that cannot be used, with file and field.
+    """
+    return build(load(scenario, changes), duration)
+
+
+def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True) -> Experiment:
+    """The experiment of a scenario file.
+
+    Args:
+        file: the scenario.
+        duration: seconds; replaces the scenario's own.
+        to_run: False where a run is only looked at, and then the file of an own law is not executed.
+
+    Raises:
+        InputError: anything in the scenario that cannot be used, with file and field.
+    """
+    scenario, path = file.scenario, file.path
+    target, angles, target_angles = build_target(path, scenario)
+    with located(path, "robot"):
+        robot = _robot(scenario)
+        nid = NearIdentityDiffeomorphism(scenario.robot.projection_distance_m)
+    if scenario.sensor.delay_periods and scenario.plant.name == "single_integrator":
+        raise InputError(f"{path}: sensor.delay_periods: the plant single_integrator is continuous, expected 0")
+    arena = _arena(path, scenario)
+    phases = _phases(path, scenario, target, duration)
+    _check_length(path, phases, scenario.plant.control_period_s, "duration_s" if duration is None else "--duration")
+    return Experiment(
+        file=file,
+        target=target,
+        angles=angles,
+        target_angles=target_angles,
+        starts=build_starts(path, scenario, target, arena),
+        phases=phases,
+        law=_law(file, target, phases, to_run),
+        estimator=_estimator(path, scenario, target.graph),
+        sensor=_sensor(scenario, target.graph),
+        nid=nid,
+        robot=robot,
+        arena=arena,
+        filter_settings=_filter_settings(path, scenario),
+    )
+
+
+def _arena(path: str, scenario: Scenario) -> Arena:
+    obstacles = []
+    for number, table in enumerate(scenario.obstacles, start=1):
+        with located(path, f"obstacles[{number}]"):
+            obstacles.append(Obstacle(np.array(table.vertices_m), table.radius_m))
+    with located(path, "arena"):
+        return Arena(scenario.arena.x_m, scenario.arena.y_m, scenario.arena.walls, tuple(obstacles))
+
+
+def _filter_settings(path: str, scenario: Scenario) -> FilterSettings:
+    table = scenario.safety
+    with located(path, "safety"):
+        return FilterSettings(
+            safe_distance=table.safe_distance_m,
+            sensing_range=table.sensing_range_m,
+            clearance=table.clearance_m,
+            gain=table.gain_per_s,
+            turn=table.turn_rad,
+            stuck_time=table.stuck_time_s,
+        )
+
+
+def _law(file: ScenarioFile, target: TargetFormation, phases: tuple[Phase, ...], to_run: bool) -> FormationLaw:
+    table = file.scenario.law
+    if table.name == "angle":
+        return AngleLaw(target, table.first_follower)
+    if table.name != "own":
+        return ComparisonLaw(target, table.name)
+    if not to_run or file.law is None or table.factory is None:
+        return NotLoaded()
+    return make_own_law(file.path, file.law, table.factory, table.parameters, target, phases[0].delta)
+
+
+def _estimator(path: str, scenario: Scenario, graph: SensingGraph) -> VelocityEstimator | None:
+    if scenario.velocity_known_by == "all":
+        return None
+    table = scenario.communication
+    edges = graph.edges if table.edges is None else agents.rows(table.edges)
+    with located(path, "communication.edges"):
+        return VelocityEstimator(graph.n, edges, table.gain_per_s)
+
+
+def _sensor(scenario: Scenario, graph: SensingGraph) -> Sensor:
+    return Sensor(graph.edges, scenario.sensor.position_noise_m, np.radians(scenario.sensor.bearing_noise_deg))
+
+
+def _robot(scenario: Scenario) -> RobotModel:
+    table = scenario.robot
+    return RobotModel(
+        drive=replace(GTERNAL.drive, wheel_speed_limit=table.wheel_speed_limit_rad_s),
+        chassis=replace(GTERNAL.chassis, tyre_friction=table.tyre_friction, body_friction=table.body_friction),
+    )
+
+
+def _check_length(path: str, phases: tuple[Phase, ...], control_period: float, field: str) -> None:
+    seconds = sum(phase.duration for phase in phases)
+    if not seconds / control_period <= LONGEST_RUN:
+        raise InputError(
+            f"{path}: {field}: expected at most {LONGEST_RUN} control periods of {control_period:g} s, "
+            f"got {seconds:g} s"
+        )
+
+
+def _phases(path: str, scenario: Scenario, target: TargetFormation, duration: float | None) -> tuple[Phase, ...]:
+    """The maneuver, cut or extended to ``duration``; one phase named after the law's aim where no phases are given."""
+    if duration is not None and not (np.isfinite(duration) and duration > 0.0):
+        raise InputError(f"--duration: expected a positive number of seconds, got {duration:g}")
+    deltas = _displacements(path, scenario, target)
+    if not scenario.phases:
+        return (Phase("shape", duration or scenario.duration_s or 0.0, delta=deltas[0]),)
+    phases, elapsed = [], 0.0
+    for table, delta in zip(scenario.phases, deltas, strict=True):
+        length = table.duration_s
+        if duration is not None:
+            last = table is scenario.phases[-1]
+            length = duration - elapsed if last else min(length, duration - elapsed)
+        if length > 0.0:
+            phases.append(Phase(table.name, length, table.velocity_m_s, delta))
+        elapsed += length
+    return tuple(phases)
+
+
+def _displacements(path: str, scenario: Scenario, target: TargetFormation) -> list[tuple[float, float] | None]:
+    """delta_12 of each phase: the scenario's, or that of p* for a comparison law."""
+    given = [phase.displacement_m for phase in scenario.phases] or [None]
+    for number, delta in enumerate(given, start=1):
+        if delta is not None and not any(delta):
+            raise InputError(f"{path}: phases[{number}].displacement_m: agents 1 and 2 must not be sent to one place")
+    if scenario.law.name == "own":
+        return given
+    if scenario.law.name != "angle":
+        if any(delta is not None for delta in given):
+            raise InputError(
+                f"{path}: phases.displacement_m: the {scenario.law.name} law takes its own from the target"
+            )
+        x, y = target.positions[agents.FIRST_FOLLOWER] - target.positions[agents.LEADER]
+        return [(float(x), float(y))] * len(given)
+    if scenario.law.first_follower == "stationary":
+        return given
+    if not scenario.phases:
+        raise InputError(f"{path}: law.first_follower: {scenario.law.first_follower!r} needs phases to follow")
+    for number, delta in enumerate(given, start=1):
+        if delta is None:
+            raise InputError(f"{path}: phases[{number}].displacement_m: missing")
+    return given

@@ -1,0 +1,233 @@
+"""The scenario file: every table and key, its unit, its default and what it may be.
+
+A scenario is TOML. Units are part of the names. Unknown keys are refused.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+LARGEST = 1e6
+"""Largest magnitude of any number in a file, in its own unit: squares and products of such numbers stay finite."""
+
+Number = Annotated[float, Field(strict=True, ge=-LARGEST, le=LARGEST, allow_inf_nan=False)]
+Positive = Annotated[float, Field(strict=True, gt=0.0, le=LARGEST, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(strict=True, ge=0.0, le=LARGEST, allow_inf_nan=False)]
+AgentNumber = Annotated[int, Field(strict=True, ge=1, le=int(LARGEST))]
+Flag = Annotated[bool, Field(strict=True)]
+Vector = tuple[Number, Number]
+
+
+class Table(BaseModel):
+    """A table of the file: no unknown keys, no change after validation."""
+
+    # What the keys mean stands in their docstrings; `scenarios.definition.keys` reads them when asked. Were they
+    # pydantic's, every command would parse this file for each of its tables. Deferred, tables are built once, as parts
+    # of a whole.
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
+
+
+class AgentTable(Table):
+    """One agent."""
+
+    id: AgentNumber
+    """Its number: 1 is the leader, 2 the first follower."""
+    neighbours: tuple[AgentNumber, ...] = ()
+    """Numbers of the agents that it senses: none for 1, [1] for 2, two smaller numbers for all others."""
+    start: Vector | None = None
+    """Initial position of its projected point, m."""
+    heading_deg: Number | None = None
+    """Initial heading; drawn from the run's seed where absent."""
+    target: Vector | None = None
+    """Its place in one configuration that has the desired shape, m; given for all agents, or for none and then the
+    shape is defined by `target.angles_deg`."""
+
+
+class TargetTable(Table):
+    """The shape, besides the agents' target positions."""
+
+    angles_deg: dict[str, Number] = Field(default_factory=dict)
+    """Angles that are measured and compared, named "vertex;from,to", counter-clockwise. Where the agents have target
+    positions, each must agree with them within half a unit of its second decimal; where they have none, two angles of
+    each follower's triangle define the shape."""
+
+
+class PhaseTable(Table):
+    """One phase of a maneuver."""
+
+    name: str
+    """What a person calls it."""
+    duration_s: Positive
+    """Its length."""
+    velocity_m_s: Vector = (0.0, 0.0)
+    """v_r, in the common frame."""
+    displacement_m: Vector | None = None
+    """delta_12 = p_2 - p_1 that the first follower is told, in the common frame."""
+
+
+class LawTable(Table):
+    """The formation law."""
+
+    name: Literal["angle", "displacement", "bearing", "distance", "own"] = "angle"
+    """The paper's law, one of the families that it weighs itself against, or an own law, whose file is executed."""
+    first_follower: Literal["stationary", "displacement", "distance", "bearing"] = "stationary"
+    """What the first follower of the angle law does with the phases' displacement."""
+    activation: Literal["simultaneous", "sequential"] = "simultaneous"
+    """Whether each follower waits until its neighbours have settled (Lemma 3)."""
+    settled_m: Positive = 0.005
+    """Distance from its place below which a follower counts as settled, for sequential activation."""
+    file: str | None = None
+    """Python file of an own law; its path starts where the scenario file is."""
+    factory: str | None = None
+    """Function or class in that file, called once as `factory(target, **parameters)`; docs/own-law.md says more."""
+    parameters: dict[str, Number] = Field(default_factory=dict)
+    """What the factory is called with, by name."""
+
+
+class CommunicationTable(Table):
+    """How agents learn v_r when only the leader knows it."""
+
+    edges: tuple[tuple[AgentNumber, AgentNumber], ...] | None = None
+    """(receiver, sender) pairs; each agent hears those that it senses where absent."""
+    gain_per_s: Positive = 2.0
+    """Rate at which an agent moves its estimate to the mean of those that it hears."""
+
+
+class RobotTable(Table):
+    """The robot; defaults are the Robotarium's GTernal."""
+
+    projection_distance_m: Positive = 0.025
+    """l, from the axle's centre ahead to the point that the law steers."""
+    saturation: Literal["scale", "clip"] = "scale"
+    """At the wheels' limit: slow both wheels by one factor, or cut each by itself."""
+    wheel_speed_limit_rad_s: Positive = 12.5
+    """Of either wheel, in both directions."""
+    tyre_friction: NotNegative = 0.8
+    """Coefficient between tyres and floor: the force of all tyres is at most this times the weight."""
+    body_friction: NotNegative = 0.0
+    """Coefficient between two chassis, and a chassis and a wall."""
+
+
+class ArenaTable(Table):
+    """The floor that the testbed grants."""
+
+    x_m: Vector = (-1.6, 1.6)
+    """[low, high] of the floor."""
+    y_m: Vector = (-1.0, 1.0)
+    """[low, high] of the floor."""
+    walls: Flag = False
+    """Whether the floor's sides stop a chassis."""
+
+
+class PlantTable(Table):
+    """The world of the run."""
+
+    name: Literal["single_integrator", "unicycle", "saturated", "pymunk"] = "pymunk"
+    """From the theorem's points to bodies with mass; `--plant` replaces it."""
+    control_period_s: Positive = 0.033
+    """Stretched by less than half a period per phase, so that a whole number of periods fits each phase."""
+
+
+class SensorTable(Table):
+    """Errors of what the robots measure."""
+
+    position_noise_m: NotNegative = 0.0
+    """Standard deviation of each coordinate of a measured relative position, drawn each control period."""
+    bearing_noise_deg: NotNegative = 0.0
+    """Standard deviation of a rotation of a measurement about its observer, drawn each control period."""
+    compass_bias_deg: NotNegative = 0.0
+    """Standard deviation of each robot's constant compass error."""
+    delay_periods: Annotated[int, Field(strict=True, ge=0)] = 0
+    """Control periods by which all measurements lag."""
+
+
+class SafetyTable(Table):
+    """What keeps the robots apart; docs/safety.md derives it."""
+
+    filter: Literal["none", "decentralised", "centralised", "robotarium"] = "none"
+    """`robotarium` has the defaults of the public simulator's certificate and none of the keys below."""
+    safe_distance_m: Positive = 0.155
+    """Ds, between the projected points of two robots."""
+    sensing_range_m: Positive = 0.30
+    """How far a robot sees others; rows are written for what is nearer."""
+    clearance_m: Positive = 0.08
+    """Between a projected point and a wall or an obstacle."""
+    gain_per_s: Positive = 5.0
+    """gamma: how fast the remaining distance may shrink."""
+    turn_rad: NotNegative = 0.7
+    """How far a robot turns its law to the left before a robot, wall or obstacle ahead."""
+    stuck_time_s: Positive = 2.0
+    """Time without progress after which a deadlock is declared and broken."""
+
+
+class ObstacleTable(Table):
+    """Everything within a radius of a point, of a segment or of a convex polygon: a disc, a bar, a block."""
+
+    vertices_m: Annotated[tuple[Vector, ...], Field(min_length=1)]
+    """One vertex, two, or those of a convex polygon in order."""
+    radius_m: NotNegative = 0.0
+    """How far the obstacle reaches beyond its vertices, edges or faces."""
+
+
+class RandomStartTable(Table):
+    """Initial projected points drawn uniformly from a rectangle, by the run's seed."""
+
+    x_m: Vector = (-1.4, 1.4)
+    """[low, high] of the rectangle."""
+    y_m: Vector = (-0.8, 0.8)
+    """[low, high] of the rectangle."""
+    min_separation_m: NotNegative = 0.2
+    """Smallest distance between two starts."""
+
+
+class RandomFormationTable(Table):
+    """A random leader-first-follower graph and target, in place of `agents`. Starts need `random_start`."""
+
+    agents: Annotated[int, Field(strict=True, ge=3)]
+    """How many."""
+    seed: Annotated[int, Field(strict=True, ge=0)]
+    """Of graph and target; not the run's seed."""
+    radius_m: Positive = 1.0
+    """Of the disc that holds the target."""
+    min_separation_m: NotNegative = 0.0
+    """Smallest distance between two agents of the target."""
+    min_angle_deg: Annotated[float, Field(strict=True, gt=0.0, lt=60.0)] = 15.0
+    """Every interior angle stays this far from a degenerate triangle."""
+
+
+class GoalTable(Table):
+    """When a run has reached its goal."""
+
+    angle_error_sum_rad: Positive = 0.01
+    """Bound on the sum of the absolute angle errors of the projected points."""
+
+
+class Scenario(Table):
+    """A whole scenario file."""
+
+    title: str
+    """One line that `formation list` shows."""
+    source: str = ""
+    """Where the experiment comes from."""
+    duration_s: Positive | None = None
+    """Length of the run; absent where phases are given."""
+    agents: tuple[AgentTable, ...] = ()
+    """At least three, with the numbers 1..n, unless `random_formation` is given."""
+    random_formation: RandomFormationTable | None = None
+    random_start: RandomStartTable | None = None
+    """In place of the agents' own `start`."""
+    target: TargetTable = TargetTable()
+    law: LawTable = LawTable()
+    phases: tuple[PhaseTable, ...] = ()
+    velocity_known_by: Literal["all", "leader"] = "all"
+    """Whether v_r is broadcast, or known to the leader alone and spread over the communication graph."""
+    communication: CommunicationTable = CommunicationTable()
+    robot: RobotTable = RobotTable()
+    arena: ArenaTable = ArenaTable()
+    plant: PlantTable = PlantTable()
+    sensor: SensorTable = SensorTable()
+    safety: SafetyTable = SafetyTable()
+    obstacles: tuple[ObstacleTable, ...] = ()
+    goal: GoalTable = GoalTable()

@@ -1,0 +1,121 @@
+"""What a run achieved: angle errors, settling, separation, the testbed's verdict, distance to the predicted end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robots.testbed import Separation, Verdict, collision_centres, judge, separation
+from scenarios.definition.experiment import Experiment
+from scenarios.measures.tracking import Tracking, measured_late_rates, predicted_ends, track
+from scenarios.simulation.trajectory import Trajectory
+
+Real = NDArray[np.float64]
+Outcome = Literal["converged", "not_converged", "diverged"]
+
+
+@dataclass(frozen=True, eq=False)
+class PhaseEnd:
+    """The state at the end of one phase.
+
+    Attributes:
+        name: of the phase.
+        row: of the trajectory.
+        angle_errors, axle_angle_errors: (m,) radians, of projected points and of axle centres.
+        predicted: (n, 2) end configuration of the projected points that the theory predicts, metres.
+        distances: (n,) from the predicted to the measured points, metres.
+    """
+
+    name: str
+    row: int
+    angle_errors: Real
+    axle_angle_errors: Real
+    predicted: Real
+    distances: Real
+
+
+@dataclass(frozen=True, eq=False)
+class Metrics:
+    """The measures of one run.
+
+    Attributes:
+        angle_errors: (T, m) of the projected points, radians.
+        error_sum: (T,) their absolute sum, the paper's ||e_1||.
+        axle_error_sum: (T,) the same of the axle centres.
+        settling_time: seconds after which ``error_sum`` stays below the goal; None if it does not.
+        separation: of the collision centres.
+        tracking: of scale, orientation and translation.
+        late_rates: of the followers' distances, 1/s, as measured; None where there is too little to fit.
+        phases: the state at the end of each phase that the run completed.
+    """
+
+    angle_errors: Real
+    error_sum: Real
+    axle_error_sum: Real
+    settling_time: float | None
+    separation: Separation
+    verdict: Verdict
+    tracking: Tracking
+    late_rates: list[float | None]
+    phases: tuple[PhaseEnd, ...]
+    outcome: Outcome
+
+
+@np.errstate(over="ignore", invalid="ignore")  # a diverged run is an outcome, not a warning
+def measure(experiment: Experiment, trajectory: Trajectory) -> Metrics:
+    """The measures of a single run."""
+    angles, targets = experiment.angles, experiment.target_angles
+    errors = angles.errors(trajectory.points, targets)
+    axle_errors = angles.errors(trajectory.poses[..., :2], targets)
+    error_sum = np.abs(errors).sum(axis=-1)
+    axle_sum = np.abs(axle_errors).sum(axis=-1)
+    tracking = track(experiment, trajectory)
+    near = separation(collision_centres(trajectory.poses))
+    return Metrics(
+        angle_errors=errors,
+        error_sum=error_sum,
+        axle_error_sum=axle_sum,
+        settling_time=settling_time(trajectory.t, error_sum, experiment.goal),
+        separation=near,
+        verdict=judge(
+            trajectory.t, trajectory.poses, trajectory.wheel_speeds, experiment.arena, experiment.robot.drive, near
+        ),
+        tracking=tracking,
+        late_rates=measured_late_rates(experiment, trajectory),
+        phases=_phase_ends(experiment, trajectory, errors, axle_errors, tracking),
+        outcome=_outcome(trajectory, error_sum, experiment.goal),
+    )
+
+
+def settling_time(t: Real, error_sum: Real, bound: float) -> float | None:
+    """The first of the times t (T,) from which ``error_sum`` (T,) stays below ``bound``; None if it ends above."""
+    above = np.flatnonzero(~(error_sum < bound))
+    if not above.size:
+        return float(t[0])
+    if above[-1] == len(t) - 1:
+        return None
+    return float(t[above[-1] + 1])
+
+
+def _phase_ends(
+    experiment: Experiment, trajectory: Trajectory, errors: Real, axle_errors: Real, tracking: Tracking
+) -> tuple[PhaseEnd, ...]:
+    ends = []
+    finished = np.isfinite(trajectory.points[-1]).all()
+    predictions = predicted_ends(experiment, trajectory.points[0])
+    for index, (phase, predicted) in enumerate(zip(experiment.phases, predictions, strict=True)):
+        rows = np.flatnonzero(trajectory.phase == index)
+        if not rows.size or (rows[-1] == len(trajectory.t) - 1 and not finished):
+            break
+        row = int(rows[-1])
+        ends.append(PhaseEnd(phase.name, row, errors[row], axle_errors[row], predicted, tracking.distances[row]))
+    return tuple(ends)
+
+
+def _outcome(trajectory: Trajectory, error_sum: Real, goal: float) -> Outcome:
+    if not np.isfinite(trajectory.poses[-1]).all():
+        return "diverged"
+    return "converged" if error_sum[-1] < goal else "not_converged"

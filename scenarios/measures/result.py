@@ -1,0 +1,144 @@
+"""``result.json``: what a run achieved, for people and for comparisons. Agents by number, angles in radians."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import platform
+from typing import Any
+
+import numpy as np
+
+from formation import agents
+from robots.testbed import Violation
+from robots.worlds import NOTHING
+from scenarios.definition.experiment import Experiment
+from scenarios.measures.metrics import Metrics, PhaseEnd
+from scenarios.measures.safety_result import safety_result
+from scenarios.measures.tracking import Tracking, predicted_late_rates
+from scenarios.simulation.trajectory import Trajectory
+
+SCHEMA_VERSION = 1
+RECORDED_PACKAGES = ("angle-formation", "numpy", "pymunk", "numba", "daqp")
+"""Versions that a result depends on."""
+
+
+@np.errstate(over="ignore", invalid="ignore")  # a diverged run is an outcome, not a warning
+def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: Metrics) -> dict[str, Any]:
+    """The content of ``result.json``."""
+    final, axle_final = metrics.angle_errors[-1], _axle_errors(experiment, trajectory)
+    closest = int(metrics.separation.distance.argmin())
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "scenario": experiment.file.name,
+        "scenario_sha256": experiment.file.sha256,
+        "seed": seed,
+        "plant": experiment.plant,
+        "safety": experiment.safety,
+        "versions": versions(),
+        "duration_s": float(trajectory.t[-1]),
+        "planned_duration_s": float(sum(phase.duration for phase in experiment.phases)),
+        "outcome": metrics.outcome,
+        "goal_rad": experiment.goal,
+        "angles": [
+            {
+                "name": name,
+                "target_deg": float(np.degrees(target)),
+                "final_deg": _number(np.degrees(np.mod(target + error, 2.0 * np.pi))),
+                "error_rad": _number(error),
+                "axle_error_rad": _number(axle_error),
+            }
+            for name, target, error, axle_error in zip(
+                experiment.angles.names, experiment.target_angles, final, axle_final, strict=True
+            )
+        ],
+        "angle_error_sum_rad": _number(metrics.error_sum[-1]),
+        "axle_angle_error_sum_rad": _number(metrics.axle_error_sum[-1]),
+        "settling_time_s": metrics.settling_time,
+        "min_separation": {
+            "distance_m": _number(metrics.separation.distance[closest]),
+            "time_s": float(trajectory.t[closest]),
+            "agents": agents.numbers(metrics.separation.pairs[closest]).tolist(),
+        },
+        "contacts": _contacts(trajectory),
+        "testbed": {
+            "accepted": metrics.verdict.accepted,
+            "violations": [_violation(v) for v in metrics.verdict.violations],
+        },
+        "late_rates_per_s": {
+            "predicted": None if (rates := predicted_late_rates(experiment)) is None else rates.tolist(),
+            "measured": metrics.late_rates,
+        },
+        "phases": [
+            {
+                "name": end.name,
+                "end_s": float(trajectory.t[end.row]),
+                "angle_errors_rad": [_number(e) for e in end.angle_errors],
+                "axle_angle_errors_rad": [_number(e) for e in end.axle_angle_errors],
+                "angle_error_sum_rad": _number(np.abs(end.angle_errors).sum()),
+                "axle_angle_error_sum_rad": _number(np.abs(end.axle_angle_errors).sum()),
+                **_against_prediction(experiment, metrics.tracking, end),
+                "measured_m": trajectory.points[end.row].tolist(),
+            }
+            for end in metrics.phases
+        ],
+        **safety_result(experiment, trajectory),
+    }
+
+
+def _against_prediction(experiment: Experiment, tracking: Tracking, end: PhaseEnd) -> dict[str, Any]:
+    """The end of a phase against where the theory sends it; null where the law has no theory."""
+    if not experiment.predicted:
+        keys = ("scale_error", "orientation_error_rad", "translation_error_m", "predicted_m", "distance_m")
+        return dict.fromkeys(keys)
+    return {
+        "scale_error": _number(tracking.scale[end.row]),
+        "orientation_error_rad": _number(tracking.orientation[end.row]),
+        "translation_error_m": _number(tracking.translation[end.row]),
+        "predicted_m": end.predicted.tolist(),
+        "distance_m": [_number(d) for d in end.distances],
+    }
+
+
+def _contacts(trajectory: Trajectory) -> dict[str, Any]:
+    """In how many control periods any agent touched another one, a wall or an obstacle, who, and who first."""
+    touches = trajectory.contact != NOTHING
+    periods = np.flatnonzero(touches.any(axis=1))
+    if not periods.size:
+        return {"periods": 0, "agents": [], "first": None}
+    first = periods[0]
+    return {
+        "periods": len(periods),
+        "agents": agents.numbers(np.flatnonzero(touches.any(axis=0))).tolist(),
+        "first": {
+            "time_s": float(trajectory.t[first]),
+            "agents": agents.numbers(np.flatnonzero(touches[first])).tolist(),
+        },
+    }
+
+
+def versions() -> dict[str, str]:
+    """Versions of what computed a result."""
+    found = {name: importlib.metadata.version(name) for name in RECORDED_PACKAGES}
+    return {"python": platform.python_version(), **found}
+
+
+def _axle_errors(experiment: Experiment, trajectory: Trajectory) -> np.ndarray:
+    return experiment.angles.errors(trajectory.poses[-1, :, :2], experiment.target_angles)
+
+
+def _number(value: float) -> float | None:
+    """JSON has no NaN and no infinity."""
+    return float(value) if np.isfinite(value) else None
+
+
+def _violation(violation: Violation) -> dict[str, Any]:
+    return {
+        "kind": violation.kind,
+        "steps": violation.steps,
+        "first": {
+            "time_s": violation.time,
+            "agents": agents.numbers(violation.robots).tolist(),
+            "place_m": [_number(coordinate) for coordinate in violation.place],
+            "value": _number(violation.value),
+        },
+    }

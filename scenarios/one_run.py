@@ -1,0 +1,95 @@
+"""One run from an experiment to its run folder, with a progress bar and the printed result."""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.markup import escape
+
+from scenarios.definition.experiment import Experiment
+from scenarios.measures.metrics import Metrics, measure
+from scenarios.measures.result import result
+from scenarios.recording import file, viewer
+from scenarios.recording.aside import Encoder
+from scenarios.report.printout import print_result
+from scenarios.simulation.loop import simulate
+from scenarios.simulation.trajectory import Trajectory
+from scenarios.storage import run_folder
+from scenarios.terminal import progress_bar
+
+if TYPE_CHECKING:
+    from scenarios.recording.live import LiveView
+    from scenarios.recording.viewer import Live
+
+
+def run_to_folder(
+    experiment: Experiment,
+    seed: int,
+    out: Path | None,
+    console: Console,
+    recorded: bool = True,
+    live: Live | None = None,
+) -> bool:
+    """Run, write the run folder, print the result.
+
+    Args:
+        experiment: what to run.
+        seed: of the run.
+        out: the run folder; None for the default.
+        console: where the result is printed.
+        recorded: whether the folder gets a recording.
+        live: how a viewer watches the run; None for no viewer.
+
+    Returns:
+        Whether the run reached its goal.
+
+    Raises:
+        InputError: the folder cannot be written; known before the run starts.
+    """
+    folder = out or run_folder.default_path(experiment.file.name, experiment.plant, seed)
+    with run_folder.writing(folder) as scratch, Encoder() if recorded else nullcontext() as encoder:
+        view = None if live is None else _open_view(experiment, seed, live, console)
+        with progress_bar(console, experiment.file.name) as advance:
+            trajectory = simulate(experiment, seed, advance, view)
+        metrics = measure(experiment, trajectory)
+        summary = result(experiment, seed, trajectory, metrics)
+        trajectory.save(scratch / run_folder.TRAJECTORY, metrics.angle_errors)
+        run_folder.write_scenario(scratch, experiment.file)
+        run_folder.write_json(scratch / run_folder.RESULT, summary)
+        if encoder is not None:
+            encoder.begin(scratch)
+        _draw_overview(experiment, trajectory, metrics, scratch)
+        if encoder is not None:
+            _record(scratch / run_folder.RECORDING, encoder, console)
+    if view is not None and live is not None and not (view.finish(summary) and viewer.listening(live.port)):
+        console.print("live: the viewer went away; the run folder has everything")
+    print_result(console, summary)
+    console.print(f"run folder: {escape(str(folder))}")
+    return metrics.outcome == "converged"
+
+
+def _draw_overview(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, folder: Path) -> None:
+    from scenarios.figures import OVERVIEW, plot  # matplotlib takes as long to load as the run takes
+
+    plot(experiment, trajectory, metrics, folder, [OVERVIEW], ["png"])  # `formation plot` draws the rest, and for print
+
+
+def _record(path: Path, encoder: Encoder, console: Console) -> None:
+    """Write the recording. A run is whole without it: replay rebuilds it."""
+    try:
+        file.write(path, encoder.recording())
+    except OSError as error:
+        console.print(f"recording: cannot be written: {error.strerror}; replay will rebuild it")
+
+
+def _open_view(experiment: Experiment, seed: int, live: Live, console: Console) -> LiveView | None:
+    """The viewer that watches the run; None where there is none, and then the run goes on without."""
+    if not viewer.ready(live.port):
+        console.print("live: no viewer, and none can be started here; the run goes on without")
+        return None
+    from scenarios.recording.live import LiveView, viewer_at
+
+    return LiveView(experiment, seed, viewer_at(live.port), live.speed)

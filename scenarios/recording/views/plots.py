@@ -1,0 +1,118 @@
+"""Scalars over time: angle errors, wheel speeds, separation, and how the maneuver is tracked.
+
+Scalars are float64: a recording has exactly the numbers of ``trajectory.npz``.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import rerun as rr
+
+from formation import agents, fit_similarity, wrap
+from robots.testbed import COLLISION_DISTANCE
+from scenarios.definition.experiment import Experiment
+from scenarios.measures.tracking import moving_ends
+from scenarios.recording.piece import Piece, Real
+from scenarios.recording.recorder import Recorder
+from scenarios.recording.views import style
+from scenarios.recording.views.style import Colour
+
+ANGLES, ERROR_SUM, SEPARATION = "errors/angles", "errors/log10_sum", "separation"
+WHEELS, INTERVENTIONS = "wheels", "interventions"
+SCALE, ORIENTATION, CENTROID = "tracking/scale", "tracking/orientation", "tracking/centroid"
+DISTANCE = "tracking/log10_distance"
+
+SMALLEST = 1e-16
+"""Radians or metres; what is smaller is drawn here, as its logarithm may not exist."""
+
+
+def styles(recorder: Recorder, experiment: Experiment) -> None:
+    """Names and colours of all series. What belongs to one agent has its colour."""
+    vertices = experiment.angles.triples[:, 0]
+    _style(recorder, f"{ANGLES}/value", experiment.angles.names, [style.agent_colour(row) for row in vertices])
+    _style(recorder, f"{ERROR_SUM}/value", ["sum of |error|"], [recorder.colour])
+    _style(recorder, f"{ERROR_SUM}/goal", ["goal"], [style.GOAL])
+    _style(recorder, f"{SEPARATION}/value", ["closest pair"], [recorder.colour])
+    _style(recorder, f"{SEPARATION}/limit", ["testbed's limit"], [style.LIMIT])
+    names = [f"{agents.number(row)} {side}" for row in range(experiment.n) for side in ("left", "right")]
+    _style(recorder, f"{WHEELS}/value", names, [style.agent_colour(row // 2) for row in range(2 * experiment.n)])
+    _style(recorder, f"{WHEELS}/limit", ["limit", "limit"], [style.LIMIT] * 2)
+    for entity in (SCALE, ORIENTATION):
+        _style(recorder, f"{entity}/ideal", ["predicted"], [style.PREDICTED], 3.0)
+        _style(recorder, f"{entity}/measured", ["measured"], [recorder.colour])
+    _style(recorder, f"{CENTROID}/ideal", ["x predicted", "y predicted"], [style.PREDICTED] * 2, 3.0)
+    _style(recorder, f"{CENTROID}/measured", ["x", "y"], [style.MEASURED, style.SECOND])
+    rows = range(experiment.n)
+    for entity in (DISTANCE, INTERVENTIONS):
+        numbers = [agents.name(row) for row in rows]
+        _style(recorder, f"{entity}/value", numbers, [style.agent_colour(row) for row in rows])
+
+
+def angle_errors(recorder: Recorder, piece: Piece) -> None:
+    """Each angle error, radians."""
+    _series(recorder, f"{ANGLES}/value", piece.t, piece.angle_errors)
+
+
+def error_sum(recorder: Recorder, piece: Piece) -> None:
+    """log10 of the absolute sum of the angle errors, and of the goal."""
+    _series(recorder, f"{ERROR_SUM}/value", piece.t, np.log10(np.maximum(piece.error_sum, SMALLEST)))
+    _level(recorder, f"{ERROR_SUM}/goal", piece, [np.log10(piece.experiment.goal)])
+
+
+def wheel_speeds(recorder: Recorder, piece: Piece) -> None:
+    """Left and right wheel of each robot between their limits, rad/s; nothing for a plant without wheels."""
+    if np.isnan(piece.trajectory.wheel_speeds[-1]).all():
+        return
+    speeds = piece.trajectory.wheel_speeds
+    _series(recorder, f"{WHEELS}/value", piece.t, speeds.reshape(len(speeds), -1))
+    limit = piece.experiment.robot.drive.wheel_speed_limit
+    _level(recorder, f"{WHEELS}/limit", piece, [-limit, limit])
+
+
+def separation(recorder: Recorder, piece: Piece) -> None:
+    """Distance of the closest pair of collision centres and the distance that the testbed demands, metres."""
+    _series(recorder, f"{SEPARATION}/value", piece.t, piece.separation.distance)
+    _level(recorder, f"{SEPARATION}/limit", piece, [COLLISION_DISTANCE])
+
+
+def interventions(recorder: Recorder, piece: Piece) -> None:
+    """How far the safety filter moved each agent's velocity, m/s; nothing without a filter."""
+    if piece.experiment.safety != "none":
+        _series(recorder, f"{INTERVENTIONS}/value", piece.t, piece.trajectory.intervention)
+
+
+def tracking(recorder: Recorder, piece: Piece) -> None:
+    """Scale, orientation (degrees) and centroid (metres) of the formation and of the moving end of Theorem 2.
+
+    Beside them, log10 of each agent's distance (metres) from its place in that end. Of an own law, what is measured.
+    """
+    experiment, points = piece.experiment, piece.trajectory.points
+    wanted = moving_ends(experiment, piece.start, piece.t, piece.trajectory.phase)
+    scale, angle, centroid = fit_similarity(experiment.target, points)
+    scale_0, angle_0, centroid_0 = fit_similarity(experiment.target, wanted)
+    angle_0 = wrap(angle_0)
+    for entity, measured, predicted in (
+        (SCALE, scale, scale_0),
+        (ORIENTATION, np.degrees(angle_0 + wrap(angle - angle_0)), np.degrees(angle_0)),
+        (CENTROID, centroid, centroid_0),
+    ):
+        if experiment.predicted:
+            _series(recorder, f"{entity}/ideal", piece.t, predicted)
+        _series(recorder, f"{entity}/measured", piece.t, measured)
+    if not experiment.predicted:
+        return
+    distance = np.linalg.norm(points - wanted, axis=-1)
+    _series(recorder, f"{DISTANCE}/value", piece.t, np.log10(np.maximum(distance, SMALLEST)))
+
+
+def _series(recorder: Recorder, entity: str, t: Real, values: Real) -> None:
+    recorder.columns(entity, t, rr.Scalars.columns(scalars=values))
+
+
+def _level(recorder: Recorder, entity: str, piece: Piece, values: list[float]) -> None:
+    """Levels that do not change: two rows draw the line."""
+    _series(recorder, entity, piece.t[[0, -1]], np.tile(values, (2, 1)))
+
+
+def _style(recorder: Recorder, entity: str, names: list[str], colours: list[Colour], width: float = 1.5) -> None:
+    recorder.fixed(entity, rr.SeriesLines(colors=colours, names=names, widths=[width] * len(names)))

@@ -1,0 +1,217 @@
+"""The arena: floor, robots as oriented bodies, what they sense, where they came from and where the theory sends them.
+
+Everything lies below one entity that mirrors y, because the viewer's second axis points down and ours up.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from formation import agents
+from robots import ROBOTARIUM_FLOOR, Arena, RobotModel
+from scenarios.definition.experiment import Experiment
+from scenarios.measures.tracking import predicted_ends
+from scenarios.recording.piece import Index, Piece, Real
+from scenarios.recording.recorder import Recorder
+from scenarios.recording.views import style
+
+Single = NDArray[np.float32]
+
+VIEW = "arena"
+WORLD = f"{VIEW}/world"
+ROBOTS = f"{WORLD}/robots"
+SENSING = f"{WORLD}/sensing"
+TRAILS = f"{WORLD}/trails"
+PREDICTION = f"{WORLD}/prediction"
+OBSTACLES = f"{WORLD}/obstacles"
+FLOOR, TESTBED, GRID, TICKS = f"{WORLD}/floor", f"{WORLD}/testbed", f"{WORLD}/grid", f"{WORLD}/ticks"
+BACKDROP = (FLOOR, TESTBED, GRID, TICKS)
+"""What the pointer passes over in silence."""
+
+RING = 0.04
+"""Radius of the ring at a predicted place, metres."""
+
+FILL = 0.01
+"""Half the width of the strokes that fill a chassis, metres."""
+
+UP = np.diag([1.0, -1.0, 1.0])
+"""From y up to the viewer's y down."""
+
+
+def floor(recorder: Recorder, experiment: Experiment) -> None:
+    """The arena's floor and walls with a labelled grid, and the Robotarium's floor where it is another one."""
+    arena = experiment.arena
+    recorder.fixed(WORLD, rr.Transform3D(mat3x3=UP))
+    recorder.fixed(
+        FLOOR,
+        rr.LineStrips2D(
+            _closed(arena.corners),
+            colors=style.WALL if arena.walls else style.FLOOR,
+            radii=0.012 if arena.walls else 0.004,
+            draw_order=-20.0,
+        ),
+    )
+    if (arena.x, arena.y) != (ROBOTARIUM_FLOOR.x, ROBOTARIUM_FLOOR.y):
+        recorder.fixed(
+            TESTBED,
+            rr.LineStrips2D(_closed(ROBOTARIUM_FLOOR.corners), colors=style.FLOOR, radii=0.004, draw_order=-21.0),
+        )
+    x, y = _multiples(arena.x), _multiples(arena.y)
+    across = [[[value, arena.y[0]], [value, arena.y[1]]] for value in x]
+    along = [[[arena.x[0], value], [arena.x[1], value]] for value in y]
+    recorder.fixed(
+        GRID,
+        rr.LineStrips2D(np.array(across + along, dtype=np.float32), colors=style.GRID, radii=0.002, draw_order=-30.0),
+    )
+    recorder.fixed(TICKS, _ticks(arena, x, y))
+
+
+def obstacles(recorder: Recorder, experiment: Experiment) -> None:
+    """What stands on the floor, as outlines."""
+    outlines = [obstacle.outline.astype(np.float32) for obstacle in experiment.arena.obstacles]
+    if outlines:
+        recorder.fixed(OBSTACLES, rr.LineStrips2D(outlines, colors=style.WALL, radii=0.008, draw_order=-15.0))
+
+
+def bodies(recorder: Recorder, experiment: Experiment) -> None:
+    """Chassis, wheels, nose and number of each robot, in the frame of its axle's centre."""
+    fill, outline, wheels = _body(experiment.robot)
+    nose = [[experiment.nid.projection_distance, 0.0]]
+    for row in range(experiment.n):
+        colour, entity = style.agent_colour(row), _robot(row)
+        paint = style.tint(colour, 0.3)
+        recorder.fixed(f"{entity}/fill", rr.LineStrips2D(fill, colors=paint, radii=FILL, draw_order=9.0))
+        recorder.fixed(f"{entity}/outline", rr.LineStrips2D(outline, colors=colour, radii=0.005, draw_order=10.0))
+        recorder.fixed(f"{entity}/wheels", rr.LineStrips2D(wheels, colors=style.WHEEL, radii=0.009, draw_order=11.0))
+        name = str(agents.number(row))
+        recorder.fixed(
+            f"{entity}/point",
+            rr.Points2D(nose, colors=style.TEXT, radii=0.012, labels=name, show_labels=True, draw_order=12.0),
+        )
+
+
+def poses(recorder: Recorder, piece: Piece) -> None:
+    """Where each robot is and where it points."""
+    rows = _finite(piece.trajectory.poses)
+    states = piece.trajectory.poses[rows].swapaxes(0, 1)
+    translation = np.zeros(states.shape)
+    translation[..., :2] = states[..., :2]
+    half = states[..., 2] / 2.0
+    turn = np.zeros((*half.shape, 4))
+    turn[..., 2], turn[..., 3] = np.sin(half), np.cos(half)
+    for row in range(piece.experiment.n):
+        place = rr.Transform3D.columns(translation=translation[row], quaternion=turn[row])
+        recorder.columns(_robot(row), piece.t[rows], place)
+
+
+def sensing(recorder: Recorder, piece: Piece) -> None:
+    """An arrow from each observer to each agent that it measures, along the line between their projected points.
+
+    It leaves out what the two bodies cover.
+    """
+    observer, observed = piece.experiment.graph.edges.T
+    rows = _finite(piece.trajectory.points)
+    points = piece.trajectory.points[rows]
+    e = points[:, observed] - points[:, observer]
+    length = np.linalg.norm(e, axis=-1, keepdims=True)
+    inset = np.minimum(style.ARROW_INSET / np.maximum(length, 1e-9), 0.5)
+    origins, vectors = points[:, observer] + inset * e, (1.0 - 2.0 * inset) * e
+    recorder.columns(SENSING, piece.t[rows], rr.Arrows2D.columns(origins=origins, vectors=vectors))
+
+
+def sensing_style(recorder: Recorder, experiment: Experiment) -> None:
+    """Thin and behind the robots."""
+    m = len(experiment.graph.edges)
+    recorder.fixed(SENSING, rr.Arrows2D.from_fields(colors=[style.SENSING] * m, radii=[0.006] * m, draw_order=5.0))
+
+
+def trails(recorder: Recorder, piece: Piece) -> None:
+    """The path of each projected point, as one short segment per agent and time; the view shows the latest ones."""
+    rows = _finite(piece.trajectory.points)
+    if len(rows) < 2:
+        return
+    stride = max(1, round(style.TRAIL_STEP / float(piece.t[rows[1]] - piece.t[rows[0]])))
+    rows = np.unique(np.append(rows[::stride], rows[-1]))
+    points = piece.trajectory.points[rows]
+    recorder.columns(TRAILS, piece.t[rows[1:]], _strips(np.stack([points[:-1], points[1:]], axis=2)))
+
+
+def trails_style(recorder: Recorder, experiment: Experiment) -> None:
+    """Each in a shade of its agent's colour."""
+    shades = [style.tint(style.agent_colour(row), 0.55) for row in range(experiment.n)]
+    recorder.fixed(TRAILS, rr.LineStrips2D.from_fields(colors=shades, radii=[0.004] * experiment.n, draw_order=3.0))
+
+
+def prediction(recorder: Recorder, piece: Piece) -> None:
+    """The end configuration that the theory predicts for the phase under way, as a ghost; none for an own law."""
+    if not piece.experiment.predicted:
+        return
+    rows = piece.changes(piece.trajectory.phase)
+    ends = predicted_ends(piece.experiment, piece.start)[piece.trajectory.phase[rows]]
+    observer, observed = piece.experiment.graph.edges.T
+    turn = np.linspace(0.0, 2.0 * np.pi, 25)
+    rings = ends[:, :, None] + RING * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    links = np.stack([ends[:, observer], ends[:, observed]], axis=2)
+    t = piece.t[np.maximum(rows - 1, 0)]
+    recorder.columns(f"{PREDICTION}/rings", t, _strips(rings))
+    recorder.columns(f"{PREDICTION}/links", t, _strips(links))
+
+
+def prediction_style(recorder: Recorder, experiment: Experiment) -> None:
+    """A ring in its agent's colour where each is predicted to end, and the sensing graph between them."""
+    n, m = experiment.n, len(experiment.graph.edges)
+    shades = [style.tint(style.agent_colour(row), 0.7) for row in range(n)]
+    rings = rr.LineStrips2D.from_fields(colors=shades, radii=[0.004] * n, draw_order=2.0)
+    recorder.fixed(f"{PREDICTION}/rings", rings)
+    links = rr.LineStrips2D.from_fields(colors=[style.GHOST] * m, radii=[0.002] * m, draw_order=1.0)
+    recorder.fixed(f"{PREDICTION}/links", links)
+
+
+def _finite(states: Real) -> Index:
+    """Rows of states (T, n, k) that can be drawn: all but the last one of a run that diverged."""
+    return np.flatnonzero(np.isfinite(states).all(axis=(1, 2)))
+
+
+def _robot(row: int) -> str:
+    return f"{ROBOTS}/{agents.number(row)}"
+
+
+def _closed(corners: Real) -> Single:
+    return np.concatenate([corners, corners[:1]])[None].astype(np.float32)
+
+
+def _strips(strips: Real) -> rr.ComponentColumnList:
+    """Columns of strips (T, k, p, 2): k strips of p points at each time."""
+    times, count, points = strips.shape[:3]
+    return rr.LineStrips2D.columns(strips=strips.reshape(-1, points, 2).astype(np.float32)).partition(
+        np.full(times, count)
+    )
+
+
+def _multiples(side: tuple[float, float]) -> Real:
+    step = style.GRID_STEP
+    return step * np.arange(np.ceil(side[0] / step), np.floor(side[1] / step) + 1.0)
+
+
+def _body(robot: RobotModel) -> tuple[Single, Single, Single]:
+    """Strokes (k, 2, 2) that fill the chassis, its outline (1, 6, 2) with a nose, and the wheels (2, 2, 2), metres."""
+    back, front = robot.chassis.outline[0, 0], robot.chassis.outline[1, 0]
+    side = robot.chassis.width / 2.0
+    strokes = np.linspace(-side + FILL, side - FILL, int(np.ceil(side / FILL)))
+    fill = np.stack([np.stack([np.full_like(strokes, x), strokes], axis=-1) for x in (back + FILL, front - FILL)], 1)
+    nose = [front + 0.3 * side, 0.0]
+    corners = robot.chassis.outline
+    outline = np.array([corners[0], corners[1], nose, corners[2], corners[3], corners[0]])[None]
+    r, half = robot.drive.wheel_radius, robot.drive.base_length / 2.0
+    wheels = np.array([[[-r, y], [r, y]] for y in (-half, half)])
+    return fill.astype(np.float32), outline.astype(np.float32), wheels.astype(np.float32)
+
+
+def _ticks(arena: Arena, x: Real, y: Real) -> rr.Points2D:
+    """Coordinates along the lower and the left side, metres. The viewer writes a label a little below its point."""
+    gap, (left, bottom) = style.TICK_GAP, arena.corners[0]
+    places = [[value, bottom] for value in x] + [[left - gap, value + 0.4 * gap] for value in y]
+    labels = [f"{value:g}" for value in (*x, *y)]
+    return rr.Points2D(places, labels=labels, show_labels=True, colors=style.TEXT, radii=1e-4, draw_order=-10.0)

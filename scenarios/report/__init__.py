@@ -1,0 +1,1 @@
+"""What a person reads in a terminal about one experiment or one run. Computes nothing that a result does not hold."""

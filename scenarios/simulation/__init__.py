@@ -1,0 +1,1 @@
+"""From an experiment to a trajectory: the loop, its controller, its guard. Knows no measure of the result."""

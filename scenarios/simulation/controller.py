@@ -1,0 +1,106 @@
+"""What the robots run: from what they sense to the velocities that they command, law and safety filter included."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from formation import Phase, SequentialActivation
+from robots.sensors import disturb
+from scenarios.definition.experiment import Experiment
+from scenarios.simulation.guard import make_guard
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+class Controller:
+    """The formation law as the robots run it: body-frame velocities of the projected points from what they sense.
+
+    A law gets relative positions in body frames and, only if it says that it needs one, a compass. It never sees a
+    position or a heading. The common velocity v_r is stated in the common frame, so following it takes a compass too.
+
+    Attributes:
+        active: (..., n) which agents follow the law; the others hold still but for v_r.
+        guard: the safety filter; None without one.
+    """
+
+    def __init__(self, experiment: Experiment, generators: Sequence[np.random.Generator], batch: tuple[int, ...]):
+        self._law = experiment.law
+        self._sensor = experiment.sensor
+        self._estimator = experiment.estimator
+        self._generators = generators
+        self._batch = batch
+        self._noise: tuple[Real, Real] | None = None
+        self._commanded = np.zeros(2)
+        self._velocity: Real | None = None
+        self._delta: Real | None = None
+        self.guard = make_guard(experiment, batch)
+        scenario = experiment.scenario
+        self._delay = scenario.sensor.delay_periods
+        self._history: deque[tuple[Real, Real]] = deque(maxlen=self._delay + 1)
+        self._compass_error = self._draw_compass(np.radians(scenario.sensor.compass_bias_deg), experiment.n)
+        self._activation = None
+        self.active = np.ones((*batch, experiment.n), dtype=bool)
+        if scenario.law.activation == "sequential":
+            self._activation = SequentialActivation(experiment.target, scenario.law.settled_m, batch)
+            self.active = self._activation.active
+        if self._estimator is not None:
+            self._velocity = np.zeros((*batch, experiment.n, 2))
+
+    def begin_phase(self, phase: Phase) -> None:
+        """Take the commands of a phase."""
+        self._commanded = np.array(phase.velocity)
+        self._delta = None if phase.delta is None else np.array(phase.delta)
+        if self._estimator is None:
+            self._velocity = self._commanded if self._commanded.any() else None
+
+    def begin_period(self, points: Real, headings: Real, period: float) -> None:
+        """Do what happens once per control period: draw noise, exchange estimates of v_r, activate followers."""
+        self._history.append((points, headings))
+        points, headings = self._sensed(points, headings)
+        noise = [self._sensor.noise(rng) for rng in self._generators]
+        if noise[0] is not None:
+            turn, offset = (np.stack(part).reshape(*self._batch, -1, 2) for part in zip(*noise, strict=True))
+            self._noise = turn, offset
+        if self.guard is not None:
+            self.guard.begin_period(self._generators, self._batch, self._noise, period)
+        if self._estimator is not None and self._velocity is not None:
+            self._velocity = self._estimator.step(self._velocity, self._commanded, period)
+        if self._activation is not None:
+            self._activation.update(self._feedback(points, headings))
+
+    def __call__(self, points: Real, headings: Real) -> Real:
+        points, headings = self._sensed(points, headings)
+        feedback = self._feedback(points, headings)
+        if self._activation is not None:
+            feedback *= self.active[..., None]
+        if self._velocity is None:
+            return feedback if self.guard is None else self.guard(points, headings, feedback, np.zeros_like(feedback))
+        velocity = np.ascontiguousarray(self._velocity).view(np.complex128)
+        common = (velocity * self._compass(headings)).view(np.float64)
+        return feedback + common if self.guard is None else self.guard(points, headings, feedback, common)
+
+    def _sensed(self, points: Real, headings: Real) -> tuple[Real, Real]:
+        """The state that the measurements are of: that of ``delay_periods`` ago, the first one until then."""
+        return self._history[0] if self._delay else (points, headings)
+
+    def _feedback(self, points: Real, headings: Real) -> Real:
+        """The law's own velocities, without v_r."""
+        relative = disturb(self._sensor.measure(points, headings), self._noise)
+        compass = self._compass(headings).view(np.float64) if self._law.needs_compass else None
+        return self._law(relative, compass, self._delta)
+
+    def _compass(self, headings: Real) -> Complex:
+        """(..., n, 1) the common x axis in each body frame as a complex number, as each robot's compass shows it."""
+        compass = np.conj(headings.view(np.complex128))
+        return compass if self._compass_error is None else compass * self._compass_error
+
+    def _draw_compass(self, deviation: float, n: int) -> Complex | None:
+        if deviation == 0.0:
+            return None
+        errors = np.stack([rng.normal(0.0, deviation, n) for rng in self._generators])
+        return np.exp(1j * errors).reshape(*self._batch, n, 1)

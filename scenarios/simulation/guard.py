@@ -1,0 +1,91 @@
+"""The safety filter of a run, with the sensors' noise in what it sees."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robots.safety import Noise, SafetyFilter, make_filter
+from robots.safety.protocol import BLOCKERS, WALLS
+from scenarios.definition.experiment import Experiment
+
+Real = NDArray[np.float64]
+
+
+class Guard:
+    """Filters the velocities of a run, or of a batch of runs, once per control period.
+
+    The law and the filter share one sensor: what a follower measures of a neighbour enters both with the same noise.
+
+    Attributes:
+        filter: the filter itself, with what it says about the last period.
+    """
+
+    def __init__(self, experiment: Experiment, safety: SafetyFilter) -> None:
+        table = experiment.scenario.sensor
+        self.filter = safety
+        self._position, self._bearing = table.position_noise_m, np.radians(table.bearing_noise_deg)
+        self._seen = (experiment.n, experiment.n + WALLS + len(experiment.arena.obstacles))
+        self._observer, self._observed = experiment.graph.edges.T
+        self._noise: Noise | None = None
+        self._period = experiment.scenario.plant.control_period_s
+
+    def begin_period(
+        self,
+        generators: Sequence[np.random.Generator],
+        batch: tuple[int, ...],
+        edge_noise: tuple[Real, Real] | None,
+        period: float,
+    ) -> None:
+        """Draw the noise that holds for one control period; ``edge_noise`` is the law's, (..., m, 2) each."""
+        self._period = period
+        if edge_noise is None:
+            return
+        shape = (*batch, *self._seen)
+        angles = np.stack([rng.normal(0.0, self._bearing, self._seen) for rng in generators]).reshape(shape)
+        turns = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+        offsets = np.stack([rng.normal(0.0, self._position, (*self._seen, 2)) for rng in generators])
+        offsets = offsets.reshape(*shape, 2)
+        turns[..., self._observer, self._observed, :], offsets[..., self._observer, self._observed, :] = edge_noise
+        self._noise = Noise(turns, offsets)
+
+    def __call__(self, points: Real, headings: Real, feedback: Real, common: Real) -> Real:
+        """The filtered velocities; see :meth:`robots.safety.SafetyFilter.filter`."""
+        return self.filter.filter(points, headings, feedback, common, self._period, self._noise)
+
+
+class SafetyRecord:
+    """What the filter said, period by period: arrays as in :class:`scenarios.simulation.trajectory.Trajectory`.
+
+    Without a filter nothing was changed, relaxed or stuck.
+    """
+
+    def __init__(self, rows: int, shape: tuple[int, ...], guard: Guard | None) -> None:
+        self._filter = None if guard is None else guard.filter
+        self.intervention = np.zeros((rows, *shape))
+        self.relaxation = np.zeros((rows, *shape))
+        self.blockers: NDArray[np.int32] = np.full((rows, *shape, BLOCKERS), -1, dtype=np.int32)
+        self.stuck = np.zeros((rows, *shape))
+
+    def take(self, row: int) -> None:
+        """Record the last period."""
+        if self._filter is not None:
+            self.intervention[row] = self._filter.intervention
+            self.relaxation[row] = self._filter.relaxation
+            self.blockers[row] = self._filter.blockers
+            self.stuck[row] = self._filter.stuck
+
+
+def make_guard(experiment: Experiment, batch: tuple[int, ...]) -> Guard | None:
+    """The guard of a run; None without a filter."""
+    safety = make_filter(
+        experiment.safety,
+        (*batch, experiment.n),
+        experiment.robot.drive,
+        experiment.nid,
+        experiment.filter_settings,
+        experiment.arena,
+    )
+    return None if safety is None else Guard(experiment, safety)

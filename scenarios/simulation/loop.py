@@ -1,0 +1,106 @@
+"""The loop: sense, law, (safety), NID, drive, world, once per control period, for one run or a batch of runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from formation import Phase
+from robots import make_world
+from robots.worlds import NOTHING
+from scenarios.definition.experiment import Experiment
+from scenarios.simulation.controller import Controller
+from scenarios.simulation.guard import SafetyRecord
+from scenarios.simulation.trajectory import Trajectory
+
+
+@np.errstate(over="ignore", invalid="ignore")  # a diverged run is an outcome, not a warning
+def simulate(
+    experiment: Experiment,
+    seed: int | Sequence[int] = 0,
+    on_period: Callable[[int, int], None] | None = None,
+    on_state: Callable[[Trajectory, int], None] | None = None,
+) -> Trajectory:
+    """Run an experiment.
+
+    Args:
+        experiment: what to run.
+        seed: of the run, or the seeds of a batch of runs, which only the plants without contact accept.
+        on_period: called after each control period with the number of periods done and of all periods.
+        on_state: called after each control period with the trajectory, which has room for all periods, and the row of
+            the newest state; rows after it are not written yet.
+
+    Returns:
+        The recorded states; cut short after the first state that is not finite.
+    """
+    seeds = [seed] if isinstance(seed, int) else list(seed)
+    batch = () if isinstance(seed, int) else (len(seeds),)
+    generators = [np.random.default_rng(s) for s in seeds]
+    points_0, theta_0 = (
+        np.stack(part).reshape(*batch, experiment.n, -1)
+        for part in zip(*(experiment.starts.draw(rng) for rng in generators), strict=True)
+    )
+    world = make_world(
+        experiment.plant,
+        points_0,
+        theta_0[..., 0],
+        nid=experiment.nid,
+        robot=experiment.robot,
+        saturation=experiment.scenario.robot.saturation,
+        arena=experiment.arena,
+    )
+    controller = Controller(experiment, generators, batch)
+    schedule = [(phase, *periods(phase, experiment.scenario.plant.control_period_s)) for phase in experiment.phases]
+    total = sum(count for _, count, _ in schedule)
+    t = np.empty(total + 1)
+    poses = np.empty((total + 1, *world.poses.shape))
+    points = np.empty((total + 1, *world.points.shape))
+    wheel_speeds = np.empty_like(points)
+    phase_index = np.zeros(total + 1, dtype=np.intp)
+    contact = np.full(points.shape[:-1], NOTHING)
+    active = np.empty((total + 1, *controller.active.shape), dtype=bool)
+    safety = SafetyRecord(total + 1, (*batch, experiment.n), controller.guard)
+    t[0], poses[0], points[0], wheel_speeds[0] = 0.0, world.poses, world.points, world.wheel_speeds
+    active[0] = controller.active
+    trajectory = Trajectory(
+        t,
+        poses,
+        points,
+        wheel_speeds,
+        phase_index,
+        contact,
+        active,
+        safety.intervention,
+        safety.relaxation,
+        safety.blockers,
+        safety.stuck,
+    )
+    done, start = 0, 0.0
+    for index, (phase, count, period) in enumerate(schedule):
+        controller.begin_phase(phase)
+        for step in range(1, count + 1):
+            controller.begin_period(world.points, world.headings, period)
+            world.step(controller, period)
+            done += 1
+            t[done] = start + phase.duration * (step / count)
+            poses[done], points[done], wheel_speeds[done] = world.poses, world.points, world.wheel_speeds
+            phase_index[done], contact[done], active[done] = index, world.contacts, controller.active
+            safety.take(done)
+            if on_period is not None:
+                on_period(done, total)
+            if on_state is not None:
+                on_state(trajectory, done)
+            if not np.isfinite(world.poses.sum()):
+                total = done
+                break
+        if total == done:
+            break
+        start += phase.duration
+    return trajectory.until(total + 1)
+
+
+def periods(phase: Phase, control_period: float) -> tuple[int, float]:
+    """How many control periods fit a phase, and their length, seconds, stretched so that they fit exactly."""
+    count = max(1, round(phase.duration / control_period))
+    return count, phase.duration / count

@@ -1,0 +1,123 @@
+"""The laws side by side: what each measures and needs, and how often it reaches the right shape from random starts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from scenarios.definition.experiment import Experiment, open_experiment
+from scenarios.simulation.loop import simulate
+
+Progress = Callable[[int, int], None]
+"""Called with the number of control periods done and of all."""
+
+SCENARIO = "law-displacement"
+"""The comparison's robots: its target has a scale and an orientation, so every family can be asked for it."""
+
+DURATION = 120.0
+"""Seconds; long enough for the slowest law, so that a miss is a wrong equilibrium."""
+
+COMPASS_BIAS_DEG = 5.0
+"""Standard deviation of the compass errors in the second column of shares."""
+
+RANDOM_START = ("random_start.x_m=[-1.4, 1.4]", "random_start.y_m=[-0.8, 0.8]")
+"""Where all laws start, as changes of a scenario."""
+
+
+@dataclass(frozen=True)
+class Law:
+    """One row of the comparison."""
+
+    name: str
+    measures: str
+    frame: str
+    fixes: str
+
+
+LAWS = (
+    Law("angle", "relative positions", "any local frame", "shape"),
+    Law("displacement", "relative positions", "common (compass)", "shape, scale, orientation"),
+    Law("bearing", "bearings", "common (compass)", "shape, orientation"),
+    Law("distance", "relative positions", "any local frame", "distances along edges"),
+)
+
+
+@dataclass(frozen=True)
+class Share:
+    """How often a law reached the right shape.
+
+    Attributes:
+        law: the row.
+        exact, biased: share of the starts with an angle error sum below the scenario's goal at the end, with exact
+            compasses and with biased ones.
+    """
+
+    law: Law
+    exact: float
+    biased: float
+
+
+def compare(starts: int, on_progress: Progress | None = None) -> list[Share]:
+    """Run every law from the same ``starts`` random starts as ideal single integrators."""
+    cells = [(law, bias) for law in LAWS for bias in (0.0, COMPASS_BIAS_DEG)]
+    shares = []
+    for done, (law, bias) in enumerate(cells):
+        shares.append(_share(law, bias, starts, part_of(on_progress or _unwatched, done, len(cells))))
+    return [Share(law, *pair) for law, pair in zip(LAWS, zip(shares[::2], shares[1::2], strict=True), strict=True)]
+
+
+def part_of(on_progress: Progress, done: int, parts: int) -> Progress:
+    """The progress of one of equal ``parts``, after ``done`` of them, told as progress of the whole."""
+    return lambda period, periods: on_progress(done * periods + period, parts * periods)
+
+
+def _unwatched(done: int, total: int) -> None:
+    """Nobody looks."""
+
+
+def _share(law: Law, bias: float, starts: int, advance: Progress) -> float:
+    changes = (
+        f"law.name={law.name}",
+        f"sensor.compass_bias_deg={bias}",
+        "plant.name=single_integrator",
+        *RANDOM_START,
+    )
+    return share_reaching(open_experiment(SCENARIO, changes, DURATION), starts, advance)
+
+
+@np.errstate(over="ignore", invalid="ignore")  # a diverged run is an outcome, not a warning
+def share_reaching(experiment: Experiment, starts: int, on_period: Progress) -> float:
+    """The share of the runs with seeds from 0 that end below the goal, on a plant without contact.
+
+    Args:
+        experiment: what is run.
+        starts: number of runs.
+        on_period: called after each control period with the number of periods done and of all periods.
+    """
+    end = simulate(experiment, range(starts), on_period).points[-1]
+    if not np.isfinite(end).all():  # one that diverges ends a batch for all
+        end = np.stack([simulate(experiment, seed).points[-1] for seed in range(starts)])
+    error_sum = np.abs(experiment.angles.errors(end, experiment.target_angles)).sum(axis=-1)
+    return float(np.mean(error_sum < experiment.goal))
+
+
+def markdown(shares: list[Share], starts: int) -> str:
+    """The comparison as a Markdown page."""
+    lines = [
+        "# The laws side by side",
+        "",
+        "Written by `formation laws --markdown docs/laws.md`.",
+        "",
+        f"| law | measures | frame | fixes | right shape | with {COMPASS_BIAS_DEG:g} deg compass error |",
+        "|---|---|---|---|---:|---:|",
+    ]
+    for share in shares:
+        law = share.law
+        lines.append(
+            f"| {law.name} | {law.measures} | {law.frame} | {law.fixes} | {share.exact:.1%} | {share.biased:.1%} |"
+        )
+    lines.append("")
+    lines.append(f"{starts} random starts each, ideal single integrators, {DURATION:g} s.")
+    return "\n".join(lines) + "\n"

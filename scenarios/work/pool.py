@@ -1,0 +1,92 @@
+"""Work spread over processes, results in the order of the tasks."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from functools import partial
+from typing import Protocol, TypeVar
+
+from scenarios.errors import InputError
+
+Task = TypeVar("Task")
+Result = TypeVar("Result")
+
+
+class Spread(Protocol):
+    """Yields ``work(task)`` of every task, in the order of the tasks, each as soon as it and all before it are done."""
+
+    def __call__(self, work: Callable[[Task], Result], tasks: Sequence[Task]) -> Iterator[Result]: ...
+
+
+@contextmanager
+def spread(workers: int | None, scheduler: str | None) -> Iterator[Spread]:
+    """Processes of this machine, or the workers of a scheduler where its address is given.
+
+    Args:
+        workers: number of processes; None for one per processor.
+        scheduler: ``tcp://host:port``; None for this machine.
+
+    Raises:
+        InputError: both are given, or the scheduler cannot be used.
+    """
+    if scheduler is None:
+        yield partial(run_all, workers=workers or available_workers())
+        return
+    if workers is not None:
+        raise InputError("--workers: not together with --scheduler, which has its own")
+    from scenarios.work import cluster  # loads dask
+
+    with cluster.connected(scheduler) as by_cluster:
+        yield by_cluster
+
+
+def run_all(work: Callable[[Task], Result], tasks: Sequence[Task], workers: int) -> Iterator[Result]:
+    """Yield ``work(task)`` of every task, in the order of the tasks, each as soon as it and all before it are done.
+
+    Args:
+        work: a function of a module; with more than one worker it runs in processes that import its module anew.
+        tasks: what it is called with.
+        workers: number of processes; 1 works in this one.
+
+    Raises:
+        InputError: a process was killed, for want of memory as a rule.
+    """
+    if workers == 1 or len(tasks) == 1:
+        yield from map(work, tasks)
+        return
+    # Not forked: a copy of a process with threads (progress bars have one) may wait for a lock that nobody holds.
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(min(workers, len(tasks)), context, _begin_worker)
+    try:
+        yield from pool.map(work, tasks)
+    except BrokenProcessPool as error:
+        raise InputError(
+            "--workers: a worker process was killed, for want of memory? expected fewer workers"
+        ) from error
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def available_workers() -> int:
+    """Processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _begin_worker() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # an interrupt ends the parent, which ends the workers
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """A worker whose parent was killed would wait for work for ever."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)

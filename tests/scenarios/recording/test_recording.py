@@ -1,0 +1,455 @@
+"""Recordings: whole files whose columns are the run's own numbers, the same for the same run."""
+
+import io
+import json
+import shutil
+import subprocess
+import sys
+from collections import defaultdict
+from collections.abc import Callable
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rerun.chunk import RrdReader
+from rich.console import Console
+
+import scenarios.one_run
+from formation import agents
+from robots.testbed import COLLISION_DISTANCE
+from robots.worlds import NOTHING
+from scenarios.definition.experiment import Experiment, open_experiment
+from scenarios.errors import InputError
+from scenarios.measures.metrics import measure
+from scenarios.measures.result import result
+from scenarios.measures.safety_result import NOTICEABLE
+from scenarios.measures.tracking import predicted_ends
+from scenarios.one_run import run_to_folder
+from scenarios.recording import file, viewer
+from scenarios.recording.aside import Encoder
+from scenarios.recording.encode import encode, encode_pair
+from scenarios.recording.file import damage, write
+from scenarios.recording.piece import rows, whole
+from scenarios.recording.recorder import TIMELINE, Recorder, open_stream
+from scenarios.recording.streams import send_motion, send_setup
+from scenarios.recording.views import plots, scene, timeline
+from scenarios.replay import recording_of
+from scenarios.simulation.loop import simulate
+from scenarios.storage import run_folder
+
+Columns = dict[str, dict[str, tuple[np.ndarray, list]]]
+
+
+def read(path: Path) -> Columns:
+    """Times (None for what is static) and values of every column, by entity and component."""
+    found: dict[str, dict[str, tuple[list, list]]] = defaultdict(dict)
+    for chunk in RrdReader(str(path)).stream():
+        batch = chunk.to_record_batch()
+        for name in batch.schema.names:
+            if name not in ("rerun.controls.RowId", TIMELINE):
+                times, values = found[chunk.entity_path].setdefault(name.rsplit(":", 1)[-1], ([], []))
+                if TIMELINE in batch.schema.names:
+                    times += batch.column(TIMELINE).cast("int64").to_pylist()
+                values += batch.column(name).to_pylist()
+    return {entity: {c: (np.array(t), v) for c, (t, v) in parts.items()} for entity, parts in found.items()}
+
+
+def data(batch: pa.RecordBatch) -> str:
+    """Everything in a chunk but its row ids. As text, where NaN equals itself."""
+    columns = {name: batch.column(name) for name in batch.schema.names if name != "rerun.controls.RowId"}
+    return str({name: (c.cast("int64") if name == TIMELINE else c).to_pylist() for name, c in columns.items()})
+
+
+def scalars(columns: Columns, entity: str) -> np.ndarray:
+    return np.array(columns[f"/{entity}"]["scalars"][1])
+
+
+def encoded(experiment: Experiment, path: Path, seed: int = 0) -> tuple[Path, object, object]:
+    trajectory = simulate(experiment, seed)
+    metrics = measure(experiment, trajectory)
+    write(path, encode(experiment, seed, trajectory, metrics, result(experiment, seed, trajectory, metrics)))
+    return path, trajectory, metrics
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run folder of ten seconds of shape control among robots that touch."""
+    folder = tmp_path_factory.mktemp("runs") / "shape"
+    run_to_folder(open_experiment("shape", ("safety.filter=none",), 10.0), 0, folder, Console(quiet=True))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def columns(run: Path) -> Columns:
+    return read(run / run_folder.RECORDING)
+
+
+def test_a_run_leaves_a_recording_that_the_viewer_verifies(run: Path) -> None:
+    path = run / run_folder.RECORDING
+    assert damage(path) is None
+    subprocess.run([viewer.executable(), "rrd", "verify", str(path)], check=True, capture_output=True)
+    assert [path.name for path in run.iterdir() if path.name.startswith(".")] == []
+
+
+def test_every_stream_has_its_entities(columns: Columns) -> None:
+    expected = {
+        f"/{scene.WORLD}": {"mat3x3"},
+        f"/{scene.FLOOR}": {"strips"},
+        f"/{scene.GRID}": {"strips"},
+        f"/{scene.TICKS}": {"labels"},
+        f"/{scene.SENSING}": {"vectors", "origins"},
+        f"/{scene.TRAILS}": {"strips"},
+        f"/{scene.PREDICTION}/rings": {"strips"},
+        f"/{scene.PREDICTION}/links": {"strips"},
+        f"/{plots.ANGLES}/value": {"scalars", "names"},
+        f"/{plots.ERROR_SUM}/value": {"scalars"},
+        f"/{plots.ERROR_SUM}/goal": {"scalars"},
+        f"/{plots.SEPARATION}/value": {"scalars"},
+        f"/{plots.SEPARATION}/limit": {"scalars"},
+        f"/{plots.WHEELS}/value": {"scalars"},
+        f"/{plots.WHEELS}/limit": {"scalars"},
+        f"/{plots.DISTANCE}/value": {"scalars"},
+        f"/{timeline.PHASE}": {"state"},
+        f"/{timeline.ERRORS}": {"state"},
+        f"/{timeline.DISTANCE}": {"state"},
+        f"/{timeline.FLOOR}": {"state"},
+        f"/{timeline.EVENTS}/phases": {"text", "level"},
+        f"/{timeline.EVENTS}/separation": {"text", "level"},
+        f"/{timeline.EVENTS}/contacts": {"text", "level"},
+        "/summary": {"text"},
+        "/__properties/run": {"scenario", "seed", "plant", "safety", "outcome", "versions"},
+    }
+    for entity in (plots.SCALE, plots.ORIENTATION, plots.CENTROID):
+        expected |= {f"/{entity}/{kind}": {"scalars"} for kind in ("ideal", "measured")}
+    for number in range(1, 7):
+        expected[f"/{scene.ROBOTS}/{number}"] = {"translation", "quaternion"}
+        expected |= {f"/{scene.ROBOTS}/{number}/{part}": {"strips"} for part in ("fill", "outline", "wheels")}
+        expected[f"/{scene.ROBOTS}/{number}/point"] = {"positions", "labels"}
+    for entity, components in expected.items():
+        assert components <= columns.get(entity, {}).keys(), entity
+
+
+def test_scalars_are_bit_for_bit_the_numbers_of_the_trajectory(run: Path, columns: Columns) -> None:
+    with np.load(run / run_folder.TRAJECTORY) as data:
+        assert np.array_equal(scalars(columns, f"{plots.ANGLES}/value"), data["angle_errors"])
+        wheels = scalars(columns, f"{plots.WHEELS}/value")
+        assert np.array_equal(wheels.reshape(data["wheel_speeds"].shape), data["wheel_speeds"])
+
+
+def test_times_are_simulation_time_to_the_nanosecond(run: Path, columns: Columns) -> None:
+    with np.load(run / run_folder.TRAJECTORY) as data:
+        times = columns[f"/{plots.ANGLES}/value"]["scalars"][0]
+        np.testing.assert_allclose(times, data["t"] * 1e9, atol=0.5 + 1e-6, rtol=0)
+
+
+def test_robots_are_where_they_are_and_point_where_they_point(run: Path, columns: Columns) -> None:
+    with np.load(run / run_folder.TRAJECTORY) as data:
+        poses = data["poses"]
+    for row in range(6):
+        parts = columns[f"/{scene.ROBOTS}/{agents.number(row)}"]
+        places = np.array(parts["translation"][1]).reshape(-1, 3)
+        np.testing.assert_array_equal(places[:, :2], poses[:, row, :2].astype(np.float32))
+        _, _, z, w = np.array(parts["quaternion"][1]).reshape(-1, 4).T
+        turn = np.stack([w**2 - z**2, 2.0 * w * z], axis=-1)
+        heading = np.stack([np.cos(poses[:, row, 2]), np.sin(poses[:, row, 2])], axis=-1)
+        np.testing.assert_allclose(turn, heading, atol=1e-6)
+
+
+def test_the_world_is_mirrored_so_that_y_points_up(columns: Columns) -> None:
+    matrix = np.array(columns[f"/{scene.WORLD}"]["mat3x3"][1]).reshape(3, 3)
+    np.testing.assert_array_equal(matrix, np.diag([1.0, -1.0, 1.0]))
+
+
+def test_sensing_arrows_lie_on_the_lines_from_observer_to_observed(run: Path, columns: Columns, shape) -> None:
+    with np.load(run / run_folder.TRAJECTORY) as data:
+        points = data["points"]
+    observer, observed = shape.graph.edges.T
+    parts = columns[f"/{scene.SENSING}"]
+    vectors, origins = (np.array([v for v in parts[name][1] if v is not None]) for name in ("vectors", "origins"))
+    e = points[:, observed] - points[:, observer]
+    across = vectors[..., 0] * e[..., 1] - vectors[..., 1] * e[..., 0]
+    np.testing.assert_allclose(across, 0.0, atol=1e-6)
+    assert ((vectors * e).sum(axis=-1) >= -1e-9).all()
+    middle = (points[:, observed] + points[:, observer]) / 2.0
+    np.testing.assert_allclose(origins + vectors / 2.0, middle, atol=1e-6)
+
+
+def test_the_ghost_is_the_predicted_end_of_each_phase(moving: Callable[[str], Experiment], tmp_path: Path) -> None:
+    experiment = moving("displacement")
+    path, trajectory, _ = encoded(experiment, tmp_path / "run.rrd")
+    found = read(path)
+    times, rings = found[f"/{scene.PREDICTION}/rings"]["strips"]
+    np.testing.assert_array_equal(times, [0, 2_000_000_000])
+    centres = np.array(rings)[:, :, :-1].mean(axis=2)
+    np.testing.assert_allclose(centres, predicted_ends(experiment, trajectory.points[0]), atol=1e-6)
+    times, phases = found[f"/{timeline.PHASE}"]["state"]
+    assert [list(each) for each in phases] == [["up"], ["right"]]
+    np.testing.assert_array_equal(times, [0, 2_000_000_000])
+
+
+def test_an_own_law_has_no_ghost_and_its_scale_nothing_beside_it(tmp_path: Path) -> None:
+    """Nothing is predicted of it."""
+    path, *_ = encoded(open_experiment("own-law", ("plant.name=unicycle",), 1.0), tmp_path / "recording.rrd")
+    columns = read(path)
+    assert "scalars" in columns[f"/{plots.SCALE}/measured"]
+    for absent in (f"/{plots.SCALE}/ideal", f"/{plots.DISTANCE}/value"):
+        assert "scalars" not in columns.get(absent, {})
+    moving = [entity for entity in columns if entity.startswith(f"/{scene.PREDICTION}") and "strips" in columns[entity]]
+    assert moving == []
+
+
+def test_the_filter_is_recorded_where_there_is_one_and_only_there(columns: Columns, tmp_path: Path) -> None:
+    path, trajectory, _ = encoded(open_experiment("shape", ("safety.filter=decentralised",), 5.0), tmp_path / "run.rrd")
+    found = read(path)
+    assert np.array_equal(scalars(found, f"{plots.INTERVENTIONS}/value"), trajectory.intervention)
+    acts = (trajectory.intervention > NOTICEABLE).any(axis=1)
+    relaxed = (trajectory.relaxation > 0.0).any(axis=1)
+    state = np.where(relaxed, "relaxed", np.where(acts, "acting", "idle"))
+    rows = np.flatnonzero(np.append(True, state[1:] != state[:-1]))
+    assert [value[0] for value in found[f"/{timeline.SAFETY}"]["state"][1]] == state[rows].tolist()
+    assert "acting" in state
+    assert "scalars" not in columns[f"/{plots.INTERVENTIONS}/value"]
+
+
+def test_obstacles_stand_where_they_are(tmp_path: Path) -> None:
+    disc = "obstacles=[{vertices_m = [[1.0, 0.8]], radius_m = 0.1}]"
+    experiment = open_experiment("shape", (disc,), 0.5)
+    path, *_ = encoded(experiment, tmp_path / "run.rrd")
+    (strips,) = read(path)[f"/{scene.OBSTACLES}"]["strips"][1]
+    np.testing.assert_allclose(strips[0], experiment.arena.obstacles[0].outline, atol=1e-6)
+
+
+def test_a_plant_without_wheels_has_no_wheel_speeds(moving: Callable[[str], Experiment], tmp_path: Path) -> None:
+    path, *_ = encoded(moving("displacement"), tmp_path / "run.rrd")
+    assert "scalars" not in read(path)[f"/{plots.WHEELS}/value"]
+
+
+def test_states_change_exactly_where_the_limit_is_crossed(run: Path, columns: Columns) -> None:
+    near = measure(*(lambda r: (r.experiment, r.trajectory))(run_folder.read(run))).separation.distance
+    close = near < COLLISION_DISTANCE
+    assert close.any()
+    assert len(columns[f"/{timeline.DISTANCE}"]["state"][1]) == 1 + np.count_nonzero(close[1:] != close[:-1])
+    assert len(columns[f"/{timeline.EVENTS}/separation"]["text"][1]) == np.count_nonzero(close[1:] & ~close[:-1])
+
+
+def test_every_two_agents_that_begin_to_touch_are_one_event(run: Path, columns: Columns) -> None:
+    touched = run_folder.read(run).trajectory.contact
+    expected = set()
+    for row, agent in np.argwhere((touched[1:] != touched[:-1]) & (touched[1:] != NOTHING)).tolist():
+        one, other = sorted((agent, int(touched[row + 1, agent])))
+        expected.add((row + 1, f"agents {one + 1} and {other + 1} touch"))
+    assert expected
+    assert [text for (text,) in columns[f"/{timeline.EVENTS}/contacts"]["text"][1]] == [t for _, t in sorted(expected)]
+
+
+def test_who_touches_a_wall_is_an_event(tmp_path: Path) -> None:
+    experiment = open_experiment("shape", ("arena={x_m=[-1.0, 0.5], walls=true}", "safety.filter=none"), 10.0)
+    path, trajectory, _ = encoded(experiment, tmp_path / "run.rrd")
+    (agent, *_) = np.flatnonzero((trajectory.contact == experiment.n).any(axis=0))
+    texts = [text for (text,) in read(path)[f"/{timeline.EVENTS}/contacts"]["text"][1]]
+    assert f"{agents.name(agent)} touches a wall or an obstacle" in texts
+
+
+def test_a_run_that_diverges_is_recorded_up_to_its_last_finite_state(shape: Experiment, tmp_path: Path) -> None:
+    trajectory = simulate(shape, 0).until(100)
+    for states in (trajectory.poses, trajectory.points):
+        states[-1] = np.nan
+    metrics = measure(shape, trajectory)
+    path = tmp_path / "diverged.rrd"
+    write(path, encode(shape, 0, trajectory, metrics, result(shape, 0, trajectory, metrics)))
+    assert damage(path) is None
+    assert len(read(path)[f"/{scene.ROBOTS}/1"]["translation"][1]) == 99
+
+
+def test_two_runs_with_one_seed_have_the_same_chunk_data(tmp_path: Path) -> None:
+    chunks = []
+    for name in ("a.rrd", "b.rrd"):
+        path, *_ = encoded(open_experiment("shape", (), 5.0), tmp_path / name, seed=3)
+        chunks.append([data(chunk.to_record_batch()) for chunk in RrdReader(str(path)).stream()])
+    assert chunks[0] == chunks[1]
+
+
+def test_pieces_of_a_run_tell_what_the_whole_tells(tmp_path: Path) -> None:
+    experiment = open_experiment("shape", (), 6.0)
+    trajectory = simulate(experiment, 0)
+    cuts = [0, 1, 2, 50, 90, 91, len(trajectory.t) - 1]
+    parts = [rows(experiment, trajectory, first, last + 1) for first, last in pairwise(cuts)]
+    found = []
+    for name, pieces in (
+        ("pieces", parts),
+        ("whole", [whole(experiment, trajectory, measure(experiment, trajectory))]),
+    ):
+        stream = open_stream(name)
+        memory = stream.memory_recording()
+        send_setup(Recorder(stream), experiment)
+        for piece in pieces:
+            send_motion(Recorder(stream), piece)
+        write(tmp_path / name, memory.drain_as_bytes())
+        found.append(read(tmp_path / name))
+    assert found[0].keys() == found[1].keys()
+    for entity, components in found[1].items():
+        if entity == f"/{scene.TRAILS}" or entity.endswith(("/limit", "/goal")):
+            continue  # cut elsewhere, same lines
+        for component, (times, values) in components.items():
+            some_times, some_values = found[0][entity][component]
+            if not len(times):
+                continue
+            given = {
+                int(t): str(v) for t, v in zip(some_times, [v for v in some_values if v is not None], strict=False)
+            }
+            wanted = {int(t): str(v) for t, v in zip(times, [v for v in values if v is not None], strict=False)}
+            assert given == wanted, (entity, component)
+
+
+@given(place=st.integers(min_value=0), flip=st.integers(1, 255))
+def test_every_flipped_byte_is_noticed(tmp_path_factory: pytest.TempPathFactory, place: int, flip: int) -> None:
+    path = tmp_path_factory.mktemp("flip") / "recording.rrd"
+    content = bytearray(b"any content of some length")
+    write(path, bytes(content))
+    assert damage(path) is None
+    content[place % len(content)] ^= flip
+    path.write_bytes(content)
+    assert damage(path) == "damaged"
+
+
+@pytest.mark.parametrize("cut", ["missing", "truncated", "flipped"])
+def test_a_lost_or_damaged_recording_is_rebuilt_as_it_was(run: Path, tmp_path: Path, cut: str) -> None:
+    folder = tmp_path / "run"
+    shutil.copytree(run, folder)
+    path = folder / run_folder.RECORDING
+    original = read(path)
+    content = bytearray(path.read_bytes())
+    if cut == "missing":
+        path.unlink()
+    else:
+        content[len(content) // 2] ^= 0xFF
+        path.write_bytes(content[:-1000] if cut == "truncated" else content)
+    console = Console(record=True, file=io.StringIO(), width=400)
+    assert recording_of(folder, tmp_path, console) == path
+    assert "rebuilt" in console.export_text()
+    assert damage(path) is None
+    assert str(read(path)) == str(original)
+
+
+def test_a_folder_that_cannot_be_written_is_replayed_from_a_copy(
+    run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "run"
+    shutil.copytree(run, folder, ignore=shutil.ignore_patterns("*.rrd"))
+    whole_write = write
+
+    def refuse(path: Path, content: bytes) -> None:
+        if path.parent == folder:
+            raise PermissionError(13, "Permission denied")
+        whole_write(path, content)
+
+    monkeypatch.setattr(file, "write", refuse)
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    path = recording_of(folder, scratch, Console(quiet=True))
+    assert path.parent == scratch
+    assert damage(path) is None
+
+
+def test_a_full_disk_costs_the_recording_and_nothing_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(path: Path, content: bytes) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(file, "write", full)
+    console = Console(record=True, file=io.StringIO(), width=400)
+    run_to_folder(open_experiment("shape", (), 1.0), 0, tmp_path / "run", console)
+    assert "recording: cannot be written: No space left on device" in console.export_text()
+    names = {path.name for path in (tmp_path / "run").iterdir()}
+    assert names >= {run_folder.RESULT, run_folder.SCENARIO, run_folder.TRAJECTORY}
+    assert run_folder.RECORDING not in names
+
+
+@pytest.mark.parametrize("moment", ["measure", "_draw_overview"])
+def test_a_killed_encoder_costs_the_recording_and_nothing_else(
+    moment: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    started: list[Encoder] = []
+    enter, proceed = Encoder.__enter__, getattr(scenarios.one_run, moment)
+
+    def remembered(encoder: Encoder) -> Encoder:
+        started.append(enter(encoder))
+        return encoder
+
+    def kill(*arguments: Any) -> Any:
+        started[0]._process.kill()
+        started[0]._process.wait()
+        return proceed(*arguments)
+
+    monkeypatch.setattr(Encoder, "__enter__", remembered)
+    monkeypatch.setattr(scenarios.one_run, moment, kill)
+    console = Console(record=True, file=io.StringIO(), width=400)
+    run_to_folder(open_experiment("shape", (), 1.0), 0, tmp_path / "run", console)
+    assert "recording: cannot be written: the process that encodes it ended with code -9" in console.export_text()
+    assert damage(recording_of(tmp_path / "run", tmp_path, Console(quiet=True))) is None
+
+
+def test_an_encoder_ends_with_the_run_that_started_it() -> None:
+    with pytest.raises(KeyboardInterrupt), Encoder() as encoder:
+        raise KeyboardInterrupt
+    assert encoder._process.returncode is not None
+    code = "import os, signal; from scenarios.recording.aside import Encoder; Encoder().__enter__(); os._exit(9)"
+    orphaned = subprocess.run([sys.executable, "-c", code], capture_output=True, timeout=60)
+    assert orphaned.returncode == 9  # and returned: nobody holds its output open
+
+
+def test_a_folder_of_the_users_named_like_a_package_is_not_imported(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "scenarios").mkdir()
+    (tmp_path / "scenarios" / "__init__.py").write_text("raise RuntimeError", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    run_to_folder(open_experiment("shape", (), 0.1), 0, tmp_path / "run", Console(quiet=True))
+    assert damage(tmp_path / "run" / run_folder.RECORDING) is None
+
+
+def test_writing_leaves_no_scratch_file_when_the_place_is_taken(tmp_path: Path) -> None:
+    (tmp_path / "recording.rrd").mkdir()
+    with pytest.raises(OSError):
+        write(tmp_path / "recording.rrd", b"content")
+    assert [path.name for path in tmp_path.iterdir()] == ["recording.rrd"]
+
+
+def test_replay_of_something_else_is_refused_on_one_line(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="not a run folder"):
+        recording_of(tmp_path, tmp_path, Console(quiet=True))
+
+
+def test_two_runs_share_a_recording_side_by_side(run: Path, tmp_path: Path) -> None:
+    path = tmp_path / "pair.rrd"
+    write(path, encode_pair([run_folder.read(run)] * 2))
+    found = read(path)
+    assert damage(path) is None
+    for entity in (f"{scene.ROBOTS}/1", f"{plots.ERROR_SUM}/value", timeline.PHASE, "summary"):
+        assert str(found[f"/A/{entity}"]).splitlines()[0] == str(found[f"/B/{entity}"]).splitlines()[0]
+
+
+def test_a_recording_made_from_the_run_folder_equals_the_one_made_of_the_states_in_memory(
+    run: Path, tmp_path: Path
+) -> None:
+    read_back = run_folder.read(run)
+    path, *_ = encoded(read_back.experiment, tmp_path / "again.rrd", read_back.result["seed"])
+    assert str(read(path)) == str(read(run / run_folder.RECORDING))
+
+
+def test_the_summary_page_states_the_result(run: Path, columns: Columns) -> None:
+    (text,) = columns["/summary"]["text"][1]
+    summary = json.loads((run / run_folder.RESULT).read_text(encoding="utf-8"))
+    assert summary["outcome"].replace("_", " ") in text[0]
+    assert all(angle["name"] in text[0] for angle in summary["angles"])
+
+
+def test_nothing_of_rerun_is_imported_before_a_recording_is_asked_for() -> None:
+    modules = "sys, scenarios.cli, scenarios.one_run, scenarios.replay"
+    code = f"import {modules}; print([m for m in sys.modules if m == 'rerun'])"
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert shown.stdout.strip() == "[]"

@@ -1,0 +1,44 @@
+"""The comparison of laws, on the runner."""
+
+import numpy as np
+import pytest
+
+from scenarios.definition.experiment import open_experiment
+from scenarios.errors import InputError
+from scenarios.measures.metrics import measure
+from scenarios.simulation.loop import simulate
+from scenarios.studies.laws import LAWS, compare, markdown
+
+
+@pytest.mark.slow
+def test_only_the_angle_law_reaches_the_shape_from_every_start_and_needs_no_compass() -> None:
+    shares = {share.law.name: share for share in compare(50)}
+    assert shares["angle"].exact == shares["angle"].biased == 1.0
+    for needs_compass in ("displacement", "bearing"):
+        assert shares[needs_compass].exact == 1.0
+        assert shares[needs_compass].biased < 0.1
+    assert shares["distance"].exact == shares["distance"].biased < 0.5
+    table = markdown(list(shares.values()), 50)
+    assert all(f"| {law.name} |" in table for law in LAWS)
+
+
+def test_the_mirrored_equilibrium_has_right_distances_and_wrong_angles() -> None:
+    experiment = open_experiment("law-distance", ("plant.name=single_integrator",), duration=120.0)
+    trajectory = simulate(experiment, 0)
+    k, i = experiment.graph.edges.T
+    length = lambda p: np.linalg.norm(p[k] - p[i], axis=1)  # noqa: E731
+    np.testing.assert_allclose(length(trajectory.points[-1]), length(experiment.target.positions), atol=1e-3)
+    assert measure(experiment, trajectory).outcome == "not_converged"
+
+
+@pytest.mark.parametrize("law", ["displacement", "bearing"])
+def test_a_comparison_law_ends_where_its_prediction_says(law: str) -> None:
+    experiment = open_experiment(f"law-{law}", ("plant.name=single_integrator",), duration=120.0)
+    metrics = measure(experiment, simulate(experiment, 0))
+    assert metrics.outcome == "converged"
+    np.testing.assert_allclose(metrics.phases[-1].distances, 0.0, atol=1e-5)
+
+
+def test_a_comparison_law_takes_no_displacement_from_a_phase() -> None:
+    with pytest.raises(InputError, match=r"phases\.displacement_m: the bearing law takes its own"):
+        open_experiment("maneuver", ("law.name=bearing",))
