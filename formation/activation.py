@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from formation import agents
+from formation.analysis.prediction import decay_rates
 from formation.plane import Real
-from formation.prediction import decay_rates
 from formation.target import TargetFormation
 
 

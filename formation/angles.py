@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from formation import agents
-from formation.graph import Index, SensingGraph
+from formation.graph.sensing import Index, SensingGraph
 from formation.plane import Real, as_complex
 
 TURN = 2.0 * np.pi

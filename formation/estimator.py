@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from formation import agents
-from formation.graph import Index
+from formation.graph.sensing import Index
 from formation.plane import Real
 
 

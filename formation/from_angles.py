@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from formation import agents
 from formation.angles import TURN, AngleSet, angle_name, wrap
 from formation.constraint import constraint_coefficients
-from formation.graph import SensingGraph
+from formation.graph.sensing import SensingGraph
 from formation.plane import Real, as_vectors
 from formation.target import DEGENERATE_SINE, TargetFormation
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from formation.constraint import interior_angles
-from formation.graph import SensingGraph
+from formation.graph.sensing import SensingGraph
 from formation.plane import Real
 from formation.target import TargetFormation
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from formation import agents
 from formation.constraint import constraint_coefficients, interior_angles
-from formation.graph import SensingGraph
+from formation.graph.sensing import SensingGraph
 from formation.plane import Complex, Real, as_complex, as_vectors
 
 DEGENERATE_SINE = 1e-6

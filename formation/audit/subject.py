@@ -8,11 +8,11 @@ from functools import cached_property
 import numpy as np
 
 from formation import agents
-from formation.graph import SensingGraph
-from formation.law import FormationLaw
-from formation.linearisation import Linearisation, linearise
+from formation.analysis.linearisation import Linearisation, linearise
+from formation.analysis.prediction import end_configuration
+from formation.graph.sensing import SensingGraph
+from formation.laws.protocol import FormationLaw
 from formation.plane import Complex, Real, as_complex, as_vectors
-from formation.prediction import end_configuration
 from formation.target import TargetFormation
 
 PLACES = 5

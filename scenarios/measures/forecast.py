@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from formation import agents, closed_loop, propagate, settling_bound
+from formation import agents, propagate, settling_bound
+from formation.analysis import closed_loop
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.tracking import predicted_ends
 

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import formation.angle_law
+import formation.laws.angle
 import scenarios.definition.experiment
 from formation import AngleLaw, TargetFormation
 from scenarios import cli
@@ -105,8 +105,8 @@ def off_by_a_thousandth(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def sign_flipped(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    gains = formation.angle_law.follower_gains
-    monkeypatch.setattr(formation.angle_law, "follower_gains", lambda target: -gains(target))
+    gains = formation.laws.angle.follower_gains
+    monkeypatch.setattr(formation.laws.angle, "follower_gains", lambda target: -gains(target))
 
 
 def edited(own: Path, text: str) -> None:

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formation import AngleLaw, closed_loop_matrix, random_target
+from formation.analysis.linearisation import Linearisation, linearise
 from formation.audit import Subject
-from formation.linearisation import Linearisation, linearise
 from formation.plane import as_complex
 
 SEEDS = st.integers(0, 2**32 - 1)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formation.edge_laws import COMPASS_FREE, EDGE_LAWS, bearing, displacement, distance, stationary
+from formation.laws.first_follower import COMPASS_FREE, EDGE_LAWS, bearing, displacement, distance, stationary
 
 vectors = st.builds(lambda r, angle: np.asarray(r * np.exp(1j * angle)), st.floats(0.05, 3.0), st.floats(-np.pi, np.pi))
 turns = st.floats(-np.pi, np.pi).map(lambda angle: np.exp(1j * angle))

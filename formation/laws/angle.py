@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from formation import agents
-from formation.edge_laws import COMPASS_FREE, EDGE_LAWS
+from formation.laws.first_follower import COMPASS_FREE, EDGE_LAWS
 from formation.plane import Complex, Real, as_complex, as_vectors
 from formation.target import TargetFormation
 

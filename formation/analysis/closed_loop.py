@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from formation import agents
-from formation.angle_law import follower_gains
+from formation.laws.angle import follower_gains
 from formation.plane import Complex, Real, as_complex, as_vectors
 from formation.target import TargetFormation
 

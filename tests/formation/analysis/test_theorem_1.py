@@ -18,7 +18,7 @@ from formation import (
     random_target,
     settling_bound,
 )
-from formation.closed_loop import matrix_exponential
+from formation.analysis.closed_loop import matrix_exponential
 from formation.plane import as_complex, as_vectors
 
 SEPARATED = 1.1

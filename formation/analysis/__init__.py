@@ -1,0 +1,1 @@
+"""What theory says before anything moves: ends, rates, the exact closed loop, linearisations. Moves nothing."""

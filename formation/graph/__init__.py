@@ -1,0 +1,1 @@
+"""Who senses whom, and the conditions on it that laws name."""

@@ -1,0 +1,1 @@
+"""One law a file: source, equation, what it measures, what is proved, what is known to fail."""
