@@ -1,7 +1,8 @@
-"""What every printed report is made of: tables without borders, and a progress bar."""
+"""What every printed report is made of: the console, tables without borders, and a progress bar."""
 
 from __future__ import annotations
 
+import shutil
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -24,6 +25,11 @@ PROGRESS_INTERVAL = 0.1
 
 WIDEST = 1000
 """Characters of a line, at most."""
+
+
+def new_console() -> Console:
+    """The terminal; where there is none, wide enough for every table."""
+    return Console(highlight=False, soft_wrap=True, width=shutil.get_terminal_size((160, 25)).columns)
 
 
 @contextmanager

@@ -1,5 +1,9 @@
-"""The command line ``formation``: parse, call, print, exit code; nothing else lives here."""
+"""The command line ``formation``: parse, call, print, exit code; nothing else lives here.
 
-from scenarios.cli.commands import BAD_INPUT, DONE, MISSED, cli, main
+One file a family of commands. Heavy packages are imported by the commands that use them.
+"""
 
-__all__ = ["BAD_INPUT", "DONE", "MISSED", "cli", "main"]
+from scenarios.cli.exits import BAD_INPUT, DONE, INTERRUPTED, MISSED
+from scenarios.cli.main import cli, main
+
+__all__ = ["BAD_INPUT", "DONE", "INTERRUPTED", "MISSED", "cli", "main"]

@@ -46,3 +46,16 @@ def write_whole(path: Path, content: bytes) -> None:
     """
     with replacing(path) as scratch:
         scratch.write_bytes(content)
+
+
+def write_text(path: Path, text: str, option: str) -> None:
+    """Write a report where the user wants it.
+
+    Raises:
+        InputError: it cannot be written there; the message names the command's ``option``.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{option} {path}: cannot be written: {error.strerror}") from error

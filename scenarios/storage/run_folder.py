@@ -88,19 +88,6 @@ def is_run(folder: Path) -> bool:
     return (folder / RESULT).is_file() and (folder / TRAJECTORY).is_file()
 
 
-def write_text(path: Path, text: str, option: str) -> None:
-    """Write a report where the user wants it.
-
-    Raises:
-        InputError: it cannot be written there; the message names the command's ``option``.
-    """
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"{option} {path}: cannot be written: {error.strerror}") from error
-
-
 def read(folder: Path) -> Run:
     """Read a run folder back.
 

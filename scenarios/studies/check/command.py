@@ -9,7 +9,7 @@ from rich.console import Console
 
 from scenarios.definition.load import library
 from scenarios.errors import InputError
-from scenarios.storage.run_folder import write_text
+from scenarios.storage.files import write_text
 from scenarios.studies.check import baseline
 from scenarios.studies.check.check import check, open_baselines, write_folders
 from scenarios.studies.check.documents import junit, markdown

@@ -1,0 +1,53 @@
+"""Commands that draw a finished run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from scenarios.cli import options
+
+
+@click.command()
+@options.run_folder
+@options.out("Folder of the figures.  [default: RUN]")
+@click.option(
+    "--format", "formats", multiple=True, type=click.Choice(["png", "pdf", "svg"]), default=("png", "pdf"),
+    show_default=True, help="May be given several times.",
+)  # fmt: skip
+def plot(run_folder: Path, out: Path | None, formats: tuple[str, ...]) -> None:
+    """Draw the paper's figures of RUN, the folder of a finished run."""
+    from scenarios.figures import names_for
+    from scenarios.figures import plot as draw
+    from scenarios.measures.metrics import measure
+    from scenarios.storage.run_folder import read
+    from scenarios.terminal import new_console
+
+    finished = read(run_folder)
+    experiment, trajectory = finished.experiment, finished.trajectory
+    metrics = measure(experiment, trajectory)
+    console = new_console()
+    for path in draw(experiment, trajectory, metrics, out or run_folder, names_for(experiment), formats):
+        console.print(str(path), markup=False)
+
+
+@click.command()
+@options.run_folder
+@click.option("--format", "form", type=click.Choice(["gif", "mp4"]), default="gif", show_default=True)
+@click.option("--speed", default=4.0, show_default=True, metavar="X", help="Simulated seconds per second.")
+@click.option("--fps", default=20.0, show_default=True, metavar="N", help="Frames per second.")
+@options.out("Folder of the film.  [default: RUN]")
+def animate(run_folder: Path, form: str, speed: float, fps: float, out: Path | None) -> None:
+    """Film RUN, the folder of a finished run, as a GIF or with ffmpeg as an MP4."""
+    from scenarios.figures import animate as film
+    from scenarios.measures.metrics import measure
+    from scenarios.storage.run_folder import read
+    from scenarios.terminal import new_console, progress_bar
+
+    finished = read(run_folder)
+    experiment, trajectory = finished.experiment, finished.trajectory
+    console, path = new_console(), (out or run_folder) / f"animation.{form}"
+    with progress_bar(console, path.name) as advance:
+        film(experiment, trajectory, measure(experiment, trajectory), path, speed, fps, advance)
+    console.print(str(path), markup=False)

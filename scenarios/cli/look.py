@@ -1,0 +1,46 @@
+"""Commands that look: what scenarios there are, what one promises, what may stand in a scenario file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from scenarios.cli import options
+
+
+@click.command("list")
+def list_command() -> None:
+    """What scenarios there are."""
+    from scenarios.report.catalogue import print_library
+    from scenarios.terminal import new_console
+
+    print_library(new_console())
+
+
+@click.command()
+@options.scenario
+@options.seed("Seed of random starts.")
+@options.changes
+def show(scenario: str, seed: int, changes: tuple[str, ...]) -> None:
+    """Graph, angles, assumptions, predicted rates and end of SCENARIO (a name or a file)."""
+    from scenarios.definition.experiment import open_experiment
+    from scenarios.report.printout import print_experiment
+    from scenarios.terminal import new_console
+
+    print_experiment(new_console(), open_experiment(scenario, changes), seed)
+
+
+@click.command()
+@options.markdown("Write a Markdown table instead.")
+def keys(markdown: Path | None) -> None:
+    """Every key of a scenario file: what it may be, its default, its meaning."""
+    from scenarios.definition import keys as reference
+    from scenarios.report.catalogue import print_keys
+    from scenarios.storage.files import write_text
+    from scenarios.terminal import new_console
+
+    if markdown is None:
+        print_keys(new_console())
+    else:
+        write_text(markdown, reference.markdown(), "--markdown")

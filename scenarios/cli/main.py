@@ -1,0 +1,65 @@
+"""The command ``formation``: its families of commands, and what becomes of an error."""
+
+from __future__ import annotations
+
+import gc
+import sys
+
+import click
+
+from scenarios.cli import draw, export, look, many, run, study
+from scenarios.cli.exits import BAD_INPUT, INTERRUPTED
+from scenarios.errors import InputError, did_you_mean
+
+FAMILIES: tuple[tuple[click.Command, ...], ...] = (
+    (look.list_command, look.show, look.keys),
+    (run.run, run.replay),
+    (draw.plot, draw.animate),
+    (many.sweep_command, many.check),
+    (study.laws, study.audit, study.reproduce),
+    (export.export,),
+)
+"""All commands, a family a file."""
+
+
+class Commands(click.Group):
+    """The commands, with the nearest name for a misspelt one."""
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if args and not args[0].startswith("-") and args[0] not in self.commands:
+            raise InputError(f"command: no command named {args[0]!r}, {did_you_mean(args[0], self.commands)}")
+        return super().resolve_command(ctx, args)
+
+
+@click.group(
+    cls=Commands,
+    commands=[command for family in FAMILIES for command in family],
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+@click.version_option(package_name="angle-formation")
+@click.pass_context
+def cli(ctx: click.Context) -> None:
+    """Angle-constrained formation control of differential-drive robots."""
+    if ctx.invoked_subcommand is None:
+        click.echo(ctx.get_help())
+
+
+def main() -> None:
+    """Run the command line: errors on one line on stderr, never a traceback for bad input."""
+    gc.set_threshold(50_000, 20, 50)  # loading packages makes objects and frees none: searching them costs 0.2 s a run
+    try:
+        cli.main(standalone_mode=False)
+    except InputError as error:
+        _fail(str(error))
+    except click.ClickException as error:
+        _fail(error.format_message())
+    except click.Abort:
+        sys.exit(INTERRUPTED)
+
+
+def _fail(message: str) -> None:
+    click.echo(f"formation: {' '.join(message.split())}", err=True)
+    sys.exit(BAD_INPUT)

@@ -1,0 +1,84 @@
+"""Commands that make many runs of scenarios: over seeds and values, and against baselines."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from scenarios.cli import options
+from scenarios.cli.exits import MISSED
+from scenarios.errors import InputError
+
+
+@click.command("sweep")
+@options.scenario
+@click.option("--seeds", required=True, metavar="A:B", help="Seeds A to B - 1, one run each.")
+@options.plant
+@options.changes
+@click.option("--vary", "varied", multiple=True, metavar="KEY=V1,V2,...", help="Run with each of these values.")
+@options.workers
+@click.option("--scheduler", metavar="ADDRESS", help="A running dask scheduler's, tcp://host:port, in their place.")
+@options.out("[default: runs/sweep-SCENARIO-PLANT-seedsA-B]")
+def sweep_command(
+    scenario: str,
+    seeds: str,
+    plant: str | None,
+    changes: tuple[str, ...],
+    varied: tuple[str, ...],
+    workers: int | None,
+    scheduler: str | None,
+    out: Path | None,
+) -> None:
+    """Run SCENARIO (a name or a file) with many seeds: one row per run, and a summary.
+
+    Where --vary is given several times, every combination of the values is run with every seed. Rows are kept as they
+    come, also those of a sweep that is stopped. Exit code 0 whatever the runs gave.
+    """
+    from scenarios.studies.sweep import open_study, parse_seeds, sweep
+    from scenarios.studies.sweep_table import print_sweep
+    from scenarios.studies.variations import parse_variations
+    from scenarios.terminal import new_console, progress_bar
+    from scenarios.work.pool import spread
+
+    changes = options.changed(changes, plant)
+    console = new_console()
+    study = open_study(scenario, changes, parse_variations(varied, changes), parse_seeds(seeds))
+    with spread(workers, scheduler) as run_all, progress_bar(console, "sweep") as advance:
+        summaries, folder = sweep(study, out, run_all, advance)
+    print_sweep(console, study, summaries, folder)
+
+
+@click.command()
+@click.argument("scenarios", nargs=-1, metavar="[SCENARIO ...]")
+@click.option("--baselines", type=click.Path(path_type=Path), help="Their folder.  [default: the library's]")
+@click.option("--portable", is_flag=True, help="Allow the spread between machines on the baselines' own machine too.")
+@click.option("--junit", type=click.Path(path_type=Path, dir_okay=False), help="Write a JUnit XML report.")
+@options.markdown("Write a Markdown report.")
+@click.option("--out", default="runs/check", show_default=True, type=click.Path(path_type=Path), help="For misses.")
+@options.workers
+@click.option("--update", is_flag=True, help="Make the baselines anew instead, and show what changed.")
+def check(
+    scenarios: tuple[str, ...],
+    baselines: Path | None,
+    portable: bool,
+    junit: Path | None,
+    markdown: Path | None,
+    out: Path,
+    workers: int | None,
+    update: bool,
+) -> None:
+    """Run scenarios again and compare them with their baselines; all that have one, if none is named.
+
+    Exit code 1 on a miss. The worst misses leave run folders in --out.
+    """
+    from scenarios.studies.check.command import check_command, update_command
+    from scenarios.terminal import new_console
+
+    if not update:
+        if not check_command(scenarios, baselines, portable, junit, markdown, out, workers, new_console()):
+            raise SystemExit(MISSED)
+        return
+    if junit is not None or markdown is not None:
+        raise InputError(f"--{'markdown' if junit is None else 'junit'}: not together with --update")
+    update_command(scenarios, baselines, workers, new_console())

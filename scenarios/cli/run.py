@@ -1,0 +1,76 @@
+"""Commands that make one run, and open what was recorded."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from scenarios.cli import options
+from scenarios.cli.exits import MISSED
+from scenarios.errors import InputError
+
+if TYPE_CHECKING:
+    from scenarios.recording.viewer import Live
+
+
+@click.command()
+@options.scenario
+@options.seed("Seed of all randomness.")
+@options.plant
+@options.safety("none, decentralised, centralised or robotarium.")
+@options.duration
+@options.changes
+@options.out("Run folder.  [default: runs/SCENARIO-PLANT-seedN]")
+@click.option("--recording/--no-recording", "recorded", default=True, help="Whether to write recording.rrd.")
+@click.option("--live", is_flag=True, help="Watch the run in a viewer, one that is open or a new one.")
+@click.option(
+    "--speed", type=click.FloatRange(min=0.0, min_open=True), help="With --live: simulated s per s.  [default: 1]"
+)
+def run(
+    scenario: str,
+    seed: int,
+    plant: str | None,
+    safety: str | None,
+    duration: float | None,
+    changes: tuple[str, ...],
+    out: Path | None,
+    recorded: bool,
+    live: bool,
+    speed: float | None,
+) -> None:
+    """Run SCENARIO (a name or a file), print its result and write its run folder."""
+    from scenarios.definition.experiment import open_experiment
+    from scenarios.one_run import run_to_folder
+    from scenarios.terminal import new_console
+
+    changes = options.changed(changes, plant, safety)
+    experiment = open_experiment(scenario, changes, duration)
+    if safety is not None and safety != experiment.safety:
+        raise InputError(f"--safety {safety}: the plant {experiment.plant} has no robots to keep apart, expected none")
+    if not run_to_folder(experiment, seed, out, new_console(), recorded, _live(live, speed)):
+        raise SystemExit(MISSED)
+
+
+@click.command()
+@click.argument("runs", nargs=-1, required=True, metavar="RUN [RUN]", type=click.Path(path_type=Path))
+@click.option("--web", is_flag=True, help="In the browser; served to this machine alone.")
+def replay(runs: tuple[Path, ...], web: bool) -> None:
+    """Open the recording of a run, or of two runs beside each other, in the viewer."""
+    from scenarios.replay import replay as show_runs
+    from scenarios.terminal import new_console
+
+    if len(runs) > 2:
+        raise InputError(f"replay: expected one run folder or two, got {len(runs)}")
+    show_runs(runs, web, new_console())
+
+
+def _live(live: bool, speed: float | None) -> Live | None:
+    if not live:
+        if speed is not None:
+            raise InputError("--speed: needs --live")
+        return None
+    from scenarios.recording.viewer import Live
+
+    return Live() if speed is None else Live(speed)
