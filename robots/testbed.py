@@ -26,8 +26,6 @@ COLLISION_DISTANCE = 0.135
 OBSTACLE_DISTANCE = COLLISION_DISTANCE / 2.0
 """Metres between a collision centre and an obstacle, below which the verdict rejects a run."""
 
-_CHUNK = 1 << 22  # distances held in memory at once
-
 
 @dataclass(frozen=True)
 class Violation:
@@ -84,20 +82,14 @@ def collision_centres(poses: Real) -> Real:
 
 def separation(centres: Real) -> Separation:
     """The closest pair at each time, of points (T, n, 2), metres."""
+    from robots.closest_pairs import closest_pairs  # loads numba
+
     steps, n = centres.shape[:2]
-    a, b = np.triu_indices(n, 1)
-    if len(a) == 0:
+    if n < 2:
         return Separation(np.full(steps, np.inf), np.zeros((steps, 2), dtype=np.intp))
-    z = np.ascontiguousarray(centres).view(np.complex128)[..., 0]
-    closest = np.empty(steps, dtype=np.intp)
-    distance = np.empty(steps)
-    rows = max(1, _CHUNK // len(a))
-    for start in range(0, steps, rows):
-        part = slice(start, start + rows)
-        gap = np.abs(z[part, a] - z[part, b])
-        closest[part] = gap.argmin(axis=1)
-        distance[part] = gap.min(axis=1)
-    return Separation(distance, np.stack([a[closest], b[closest]], axis=1))
+    pairs = closest_pairs(np.ascontiguousarray(centres))
+    one, other = (np.take_along_axis(centres, pairs[:, k, None, None], axis=1)[:, 0] for k in (0, 1))
+    return Separation(np.abs(np.ascontiguousarray(one - other).view(np.complex128)[:, 0]), pairs)
 
 
 def judge(

@@ -101,15 +101,6 @@ def test_the_closest_pair_is_found_among_all_at_every_time() -> None:
         assert tuple(near.pairs[k]) == min(distances, key=distances.__getitem__)
 
 
-def test_long_runs_are_measured_piece_by_piece_with_the_same_result(monkeypatch: pytest.MonkeyPatch) -> None:
-    points = np.random.default_rng(0).normal(size=(50, 6, 2))
-    whole = separation(points)
-    monkeypatch.setattr("robots.testbed._CHUNK", 100)
-    pieces = separation(points)
-    assert (pieces.distance == whole.distance).all()
-    assert (pieces.pairs == whole.pairs).all()
-
-
 def test_a_robot_alone_is_infinitely_far_from_all_others() -> None:
     assert np.isinf(separation(np.zeros((3, 1, 2))).distance).all()
     assert judge(*run([(0.0, 0.0, 0.0)])).accepted
