@@ -10,6 +10,7 @@ from pathlib import Path
 from types import ModuleType
 
 from scenarios.errors import InputError
+from scenarios.reading import read_regular
 
 LONGEST_MESSAGE = 200
 """Characters of a user's exception that a message repeats."""
@@ -74,7 +75,7 @@ def read(scenario: str, folder: Path, name: str) -> LawFile:
     """
     path = folder / name
     try:
-        return LawFile(path, path.read_bytes())
+        return LawFile(path, read_regular(path))
     except FileNotFoundError:
         raise InputError(f"{scenario}: law.file: no such file: {path}") from None
     except (OSError, ValueError) as error:  # a path with a null byte

@@ -16,6 +16,7 @@ from scenarios.definition import law_file
 from scenarios.definition.law_file import LawFile
 from scenarios.definition.schema import LawTable, Scenario
 from scenarios.errors import InputError, did_you_mean
+from scenarios.reading import read_regular
 
 LIBRARY = Path(__file__).parents[1] / "library"
 
@@ -90,7 +91,7 @@ def load(scenario: str, changes: Sequence[str] = ()) -> ScenarioFile:
     """
     path = find(scenario)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_regular(path).decode("utf-8-sig")  # some editors begin a file with a byte-order mark
     except FileNotFoundError as error:
         raise InputError(f"{scenario}: no such scenario file") from error
     except OSError as error:

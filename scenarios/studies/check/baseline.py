@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from scenarios.definition.experiment import Experiment
 from scenarios.definition.load import library
 from scenarios.errors import InputError, did_you_mean
+from scenarios.reading import read_regular
 
 FOLDER = Path(__file__).parents[2] / "baselines"
 """The library's baselines."""
@@ -153,7 +154,7 @@ def read(path: Path) -> Baseline:
         InputError: the file is missing, damaged or of another schema.
     """
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = json.loads(read_regular(path))
     except FileNotFoundError as error:
         known = [found.stem for found in path.parent.glob("*.json")] or library()
         hint = did_you_mean(path.stem, known)
