@@ -39,7 +39,8 @@ class VelocityEstimator:
         if (lost := unreachable(n, e)).size:
             named = ", ".join(str(agents.number(row)) for row in lost)
             raise ValueError(
-                f"the communication graph has no spanning tree rooted at the leader: agents {named} cannot hear from it"
+                "the communication graph has no spanning tree rooted at the leader: "
+                f"{'agent' if lost.size == 1 else 'agents'} {named} cannot hear from it"
             )
         weights = np.zeros((n, n))
         weights[e[:, 0], e[:, 1]] = 1.0

@@ -23,6 +23,7 @@ from robots import GTERNAL, Arena, NearIdentityDiffeomorphism, RobotModel
 from robots import RelativePositionSensor as Sensor
 from robots.obstacles import Obstacle
 from robots.safety import FilterSettings
+from scenarios.definition.bounds import check_size
 from scenarios.definition.load import ScenarioFile, load
 from scenarios.definition.own_law import NotLoaded, make_own_law
 from scenarios.definition.schema import Scenario
@@ -31,9 +32,6 @@ from scenarios.definition.targets import build_target
 from scenarios.errors import InputError, located
 
 Real = NDArray[np.float64]
-
-LONGEST_RUN = 1_000_000
-"""Control periods whose states are kept in memory; nine hours of the Robotarium's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,6 +135,9 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
         InputError: anything in the scenario that cannot be used, with file and field.
     """
     scenario, path = file.scenario, file.path
+    if duration is not None and not (np.isfinite(duration) and duration > 0.0):
+        raise InputError(f"--duration: expected a positive number of seconds, got {duration:g}")
+    check_size(path, scenario, duration)
     target, angles, target_angles = build_target(path, scenario)
     with located(path, "robot"):
         robot = _robot(scenario)
@@ -145,7 +146,6 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
         raise InputError(f"{path}: sensor.delay_periods: the plant single_integrator is continuous, expected 0")
     arena = _arena(path, scenario)
     phases = _phases(path, scenario, target, duration)
-    _check_length(path, phases, scenario.plant.control_period_s, "duration_s" if duration is None else "--duration")
     return Experiment(
         file=file,
         target=target,
@@ -217,19 +217,8 @@ def _robot(scenario: Scenario) -> RobotModel:
     )
 
 
-def _check_length(path: str, phases: tuple[Phase, ...], control_period: float, field: str) -> None:
-    seconds = sum(phase.duration for phase in phases)
-    if not seconds / control_period <= LONGEST_RUN:
-        raise InputError(
-            f"{path}: {field}: expected at most {LONGEST_RUN} control periods of {control_period:g} s, "
-            f"got {seconds:g} s"
-        )
-
-
 def _phases(path: str, scenario: Scenario, target: TargetFormation, duration: float | None) -> tuple[Phase, ...]:
     """The maneuver, cut or extended to ``duration``; one phase named after the law's aim where no phases are given."""
-    if duration is not None and not (np.isfinite(duration) and duration > 0.0):
-        raise InputError(f"--duration: expected a positive number of seconds, got {duration:g}")
     deltas = _displacements(path, scenario, target)
     if not scenario.phases:
         return (Phase("shape", duration or scenario.duration_s or 0.0, delta=deltas[0]),)

@@ -13,6 +13,7 @@ from typing import Any, get_args
 from pydantic import BaseModel, ValidationError
 
 from scenarios.definition import law_file
+from scenarios.definition.bounds import LARGEST_INTEGER
 from scenarios.definition.law_file import LawFile
 from scenarios.definition.schema import LawTable, Scenario
 from scenarios.errors import InputError, did_you_mean
@@ -129,6 +130,7 @@ def validate(data: Mapping[str, Any], file: str) -> Scenario:
     Raises:
         InputError: the first thing that the schema refuses.
     """
+    _check_integers(data, file)
     try:
         scenario = Scenario.model_validate(data)
     except ValidationError as error:
@@ -150,6 +152,22 @@ def validate(data: Mapping[str, Any], file: str) -> Scenario:
         raise InputError(f"{file}: duration_s: expected either duration_s or phases, got {both}")
     _check_own_law(scenario.law, file)
     return scenario
+
+
+def _check_integers(data: Mapping[str, Any], file: str) -> None:
+    """An integer in a scenario has 64 bits, as TOML has it; a longer one cannot even be printed."""
+    waiting: list[tuple[tuple[int | str, ...], Any]] = [((), data)]  # no recursion: a list of lists may be deep
+    while waiting:
+        location, value = waiting.pop()
+        if isinstance(value, dict):
+            waiting += [((*location, key), entry) for key, entry in value.items()]
+        elif isinstance(value, list):
+            waiting += [((*location, index), entry) for index, entry in enumerate(value)]
+        elif isinstance(value, int) and not -LARGEST_INTEGER <= value <= LARGEST_INTEGER:
+            raise InputError(
+                f"{file}: {_field_name(location, data)}: expected an integer of at most 64 bits, "
+                f"got one of {value.bit_length()}"
+            )
 
 
 def _check_own_law(law: LawTable, file: str) -> None:
@@ -182,18 +200,18 @@ def _apply(data: dict[str, Any], change: str) -> None:
     for part in parts[:-1]:
         place = _descend(place, part, change)
     if not isinstance(place, dict):
-        raise InputError(f"--set {_shortened(change)}: {'.'.join(parts[:-1])} is not a table")
+        raise InputError(f"--set {_shortened(change)}: {_shortened('.'.join(parts[:-1]))} is not a table")
     place[parts[-1]] = value
 
 
 def _descend(place: Any, part: str, change: str) -> Any:
     if isinstance(place, list):
         for position, entry in enumerate(place, start=1):
-            if isinstance(entry, dict) and str(entry.get("id", position)) == part:
+            if isinstance(entry, dict) and _number(entry, position) == part:
                 return entry
-        raise InputError(f"--set {_shortened(change)}: no entry {part}")
+        raise InputError(f"--set {_shortened(change)}: no entry {_shortened(part)}")
     if not isinstance(place, dict):
-        raise InputError(f"--set {_shortened(change)}: {part} is not in a table")
+        raise InputError(f"--set {_shortened(change)}: {_shortened(part)} is not in a table")
     return place.setdefault(part, {})
 
 
@@ -220,6 +238,13 @@ def _explain(error: ValidationError, data: Mapping[str, Any]) -> str:
     return f"{field}: expected {expected}, got {_shortened(repr(first['input']))}"
 
 
+def _number(entry: Mapping[str, Any], position: int) -> str:
+    """What an entry of a list is called by: its ``id``, or its position where it has none that can be printed."""
+    number = entry.get("id", position)
+    usable = not isinstance(number, int) or -LARGEST_INTEGER <= number <= LARGEST_INTEGER
+    return _shortened(str(number)) if usable else str(position)
+
+
 def _shortened(text: str) -> str:
     return text if len(text) <= LONGEST_VALUE else f"{text[:LONGEST_VALUE]}..."
 
@@ -235,7 +260,7 @@ def _field_name(location: Iterable[int | str], data: Any) -> str:
         if not isinstance(part, int):
             name += f".{part}" if name else part
         elif isinstance(entry, dict) and "id" in entry:
-            name += f"[id {entry['id']}]"
+            name += f"[id {_number(entry, part + 1)}]"
         else:
             name += f"[{part + 1}]"
         data = entry

@@ -9,13 +9,19 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-LARGEST = 1e6
-"""Largest magnitude of any number in a file, in its own unit: squares and products of such numbers stay finite."""
+from scenarios.definition.bounds import (
+    LARGEST,
+    LARGEST_INTEGER,
+    LONGEST_RUN,
+    MOST_AGENTS,
+    MOST_OBSTACLES,
+    SMALLEST,
+)
 
 Number = Annotated[float, Field(strict=True, ge=-LARGEST, le=LARGEST, allow_inf_nan=False)]
-Positive = Annotated[float, Field(strict=True, gt=0.0, le=LARGEST, allow_inf_nan=False)]
+Positive = Annotated[float, Field(strict=True, ge=SMALLEST, le=LARGEST, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(strict=True, ge=0.0, le=LARGEST, allow_inf_nan=False)]
-AgentNumber = Annotated[int, Field(strict=True, ge=1, le=int(LARGEST))]
+AgentNumber = Annotated[int, Field(strict=True, ge=1, le=MOST_AGENTS)]
 Flag = Annotated[bool, Field(strict=True)]
 Vector = tuple[Number, Number]
 
@@ -139,7 +145,7 @@ class SensorTable(Table):
     """Standard deviation of a rotation of a measurement about its observer, drawn each control period."""
     compass_bias_deg: NotNegative = 0.0
     """Standard deviation of each robot's constant compass error."""
-    delay_periods: Annotated[int, Field(strict=True, ge=0)] = 0
+    delay_periods: Annotated[int, Field(strict=True, ge=0, le=LONGEST_RUN)] = 0
     """Control periods by which all measurements lag."""
 
 
@@ -165,7 +171,7 @@ class SafetyTable(Table):
 class ObstacleTable(Table):
     """Everything within a radius of a point, of a segment or of a convex polygon: a disc, a bar, a block."""
 
-    vertices_m: Annotated[tuple[Vector, ...], Field(min_length=1)]
+    vertices_m: Annotated[tuple[Vector, ...], Field(min_length=1, max_length=MOST_OBSTACLES)]
     """One vertex, two, or those of a convex polygon in order."""
     radius_m: NotNegative = 0.0
     """How far the obstacle reaches beyond its vertices, edges or faces."""
@@ -185,15 +191,15 @@ class RandomStartTable(Table):
 class RandomFormationTable(Table):
     """A random leader-first-follower graph and target, in place of `agents`. Starts need `random_start`."""
 
-    agents: Annotated[int, Field(strict=True, ge=3)]
+    agents: Annotated[int, Field(strict=True, ge=3, le=MOST_AGENTS)]
     """How many."""
-    seed: Annotated[int, Field(strict=True, ge=0)]
+    seed: Annotated[int, Field(strict=True, ge=0, le=LARGEST_INTEGER)]
     """Of graph and target; not the run's seed."""
     radius_m: Positive = 1.0
     """Of the disc that holds the target."""
     min_separation_m: NotNegative = 0.0
     """Smallest distance between two agents of the target."""
-    min_angle_deg: Annotated[float, Field(strict=True, gt=0.0, lt=60.0)] = 15.0
+    min_angle_deg: Annotated[float, Field(strict=True, ge=SMALLEST, lt=60.0)] = 15.0
     """Every interior angle stays this far from a degenerate triangle."""
 
 
@@ -213,14 +219,14 @@ class Scenario(Table):
     """Where the experiment comes from."""
     duration_s: Positive | None = None
     """Length of the run; absent where phases are given."""
-    agents: tuple[AgentTable, ...] = ()
+    agents: Annotated[tuple[AgentTable, ...], Field(max_length=MOST_AGENTS)] = ()
     """At least three, with the numbers 1..n, unless `random_formation` is given."""
     random_formation: RandomFormationTable | None = None
     random_start: RandomStartTable | None = None
     """In place of the agents' own `start`."""
     target: TargetTable = TargetTable()
     law: LawTable = LawTable()
-    phases: tuple[PhaseTable, ...] = ()
+    phases: Annotated[tuple[PhaseTable, ...], Field(max_length=LONGEST_RUN)] = ()
     velocity_known_by: Literal["all", "leader"] = "all"
     """Whether v_r is broadcast, or known to the leader alone and spread over the communication graph."""
     communication: CommunicationTable = CommunicationTable()
@@ -229,5 +235,5 @@ class Scenario(Table):
     plant: PlantTable = PlantTable()
     sensor: SensorTable = SensorTable()
     safety: SafetyTable = SafetyTable()
-    obstacles: tuple[ObstacleTable, ...] = ()
+    obstacles: Annotated[tuple[ObstacleTable, ...], Field(max_length=MOST_OBSTACLES)] = ()
     goal: GoalTable = GoalTable()

@@ -104,3 +104,9 @@ def periods(phase: Phase, control_period: float) -> tuple[int, float]:
     """How many control periods fit a phase, and their length, seconds, stretched so that they fit exactly."""
     count = max(1, round(phase.duration / control_period))
     return count, phase.duration / count
+
+
+def count_periods(experiment: Experiment) -> int:
+    """How many control periods a run has."""
+    length = experiment.scenario.plant.control_period_s
+    return sum(periods(phase, length)[0] for phase in experiment.phases)

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scenarios.definition.bounds import MOST_STARTS
 from scenarios.definition.experiment import Experiment, open_experiment
-from scenarios.simulation.loop import simulate
+from scenarios.errors import InputError
+from scenarios.simulation.loop import count_periods, simulate
 
 Progress = Callable[[int, int], None]
 """Called with the number of control periods done and of all."""
@@ -18,6 +20,9 @@ SCENARIO = "law-displacement"
 
 DURATION = 120.0
 """Seconds; long enough for the slowest law, so that a miss is a wrong equilibrium."""
+
+BATCH_STATES = 5_000_000
+"""Robots times control periods that advance as one array: half a GB of states, however many starts there are."""
 
 COMPASS_BIAS_DEG = 5.0
 """Standard deviation of the compass errors in the second column of shares."""
@@ -94,13 +99,28 @@ def share_reaching(experiment: Experiment, starts: int, on_period: Progress) -> 
     Args:
         experiment: what is run.
         starts: number of runs.
-        on_period: called after each control period with the number of periods done and of all periods.
+        on_period: called after each control period of each batch with the number of periods done and of all periods.
+
+    Raises:
+        InputError: the number of starts is none that can be run.
     """
-    end = simulate(experiment, range(starts), on_period).points[-1]
-    if not np.isfinite(end).all():  # one that diverges ends a batch for all
-        end = np.stack([simulate(experiment, seed).points[-1] for seed in range(starts)])
-    error_sum = np.abs(experiment.angles.errors(end, experiment.target_angles)).sum(axis=-1)
-    return float(np.mean(error_sum < experiment.goal))
+    if not 1 <= starts <= MOST_STARTS:
+        raise InputError(f"--starts: expected 1 to {MOST_STARTS}, got {starts}")
+    together = max(1, BATCH_STATES // (experiment.n * count_periods(experiment)))
+    reached = 0
+    for first in range(0, starts, together):
+        seeds = range(first, min(first + together, starts))
+        end = simulate(experiment, seeds, _share_of(on_period, first, len(seeds), starts)).points[-1]
+        if not np.isfinite(end).all():  # one that diverges ends a batch for all
+            end = np.stack([simulate(experiment, seed).points[-1] for seed in seeds])
+        error_sum = np.abs(experiment.angles.errors(end, experiment.target_angles)).sum(axis=-1)
+        reached += int((error_sum < experiment.goal).sum())
+    return reached / starts
+
+
+def _share_of(on_period: Progress, done: int, runs: int, total: int) -> Progress:
+    """The progress of some ``runs`` after ``done`` of ``total``, told as progress of them all."""
+    return lambda period, periods: on_period(done * periods + runs * period, total * periods)
 
 
 def markdown(shares: list[Share], starts: int) -> str:

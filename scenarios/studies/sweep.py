@@ -15,7 +15,7 @@ from scenarios.definition.experiment import Experiment, build, open_experiment
 from scenarios.definition.load import ScenarioFile
 from scenarios.errors import InputError
 from scenarios.measures.metrics import measure
-from scenarios.simulation.loop import periods, simulate
+from scenarios.simulation.loop import count_periods, simulate
 from scenarios.simulation.trajectory import Trajectory
 from scenarios.storage.run_folder import write_json
 from scenarios.studies.variations import Variation, combinations
@@ -257,8 +257,7 @@ def batch_size(experiment: Experiment) -> int:
     """Runs that are made together: many on a plant without contact, one on pymunk."""
     if experiment.plant == SINGLE:
         return 1
-    period = experiment.scenario.plant.control_period_s
-    states = experiment.n * sum(periods(phase, period)[0] for phase in experiment.phases)
+    states = experiment.n * count_periods(experiment)
     return max(1, min(MOST_BATCHED, BATCH_STATES // states))
 
 

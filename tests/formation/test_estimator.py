@@ -43,7 +43,8 @@ def test_agents_that_cannot_hear_from_the_leader_are_named(seed: int, n: int) ->
     np.testing.assert_array_equal(lost, np.flatnonzero(~reach[:, 0]))
     assume(lost.size)
     names = ", ".join(str(k + 1) for k in lost)
-    with pytest.raises(ValueError, match=f"no spanning tree rooted at the leader: agents {names} cannot hear"):
+    who = "agent" if lost.size == 1 else "agents"
+    with pytest.raises(ValueError, match=f"no spanning tree rooted at the leader: {who} {names} cannot hear"):
         VelocityEstimator(n, edges, 1.0)
 
 

@@ -81,3 +81,25 @@ def test_any_value_for_any_key_is_taken_or_refused_as_bad_input(key: str, value:
 )
 def test_a_misspelt_name_gets_the_nearest_or_all(name: str, expected: str) -> None:
     assert did_you_mean(name, ["alpha", "shape"]) == expected
+
+
+LONG = "0x" + "f" * 6000
+"""An integer that Python refuses to print."""
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        (f"agents.3.start={LONG}", "agents[id 3].start"),
+        (f"agents.3.start=[0, {LONG}]", "agents[id 3].start[2]"),
+        (f"agents.3.id={LONG}", "agents[id 3].id"),
+        (f"target.angles_deg={{a={LONG}}}", "target.angles_deg.a"),
+        (f"goal={{unknown=[[{LONG}]]}}", "goal.unknown[1][1]"),
+        ("random_formation={agents=5, seed=9223372036854775808}", "random_formation.seed"),
+    ],
+)
+def test_an_integer_of_more_than_64_bits_is_refused_by_its_place_wherever_it_stands(change: str, field: str) -> None:
+    with pytest.raises(InputError) as refusal:
+        load("shape", (change,))
+    assert str(refusal.value).startswith(f"shape: {field}: expected an integer of at most 64 bits, got one of ")
+    assert len(str(refusal.value)) < 150

@@ -7,7 +7,8 @@ from scenarios.definition.experiment import open_experiment
 from scenarios.errors import InputError
 from scenarios.measures.metrics import measure
 from scenarios.simulation.loop import simulate
-from scenarios.studies.laws import LAWS, compare, markdown
+from scenarios.studies import laws
+from scenarios.studies.laws import LAWS, RANDOM_START, compare, markdown, share_reaching
 
 
 @pytest.mark.slow
@@ -42,3 +43,18 @@ def test_a_comparison_law_ends_where_its_prediction_says(law: str) -> None:
 def test_a_comparison_law_takes_no_displacement_from_a_phase() -> None:
     with pytest.raises(InputError, match=r"phases\.displacement_m: the bearing law takes its own"):
         open_experiment("maneuver", ("law.name=bearing",))
+
+
+def test_a_share_does_not_depend_on_how_many_runs_advance_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    changes = ("law.name=distance", "plant.name=single_integrator", *RANDOM_START, "goal.angle_error_sum_rad=8.0")
+    experiment = open_experiment("law-displacement", changes, 6.0)
+    shares, seen = [], []
+    for states in (laws.BATCH_STATES, 6 * 182 * 4):
+        monkeypatch.setattr(laws, "BATCH_STATES", states)
+        shares.append(share_reaching(experiment, 10, lambda *count: seen.append(count)))
+    assert shares[0] == shares[1]
+    assert 0.0 < shares[0] < 1.0
+    parts = [done / total for done, total in seen]
+    half = len(parts) // 4
+    assert parts[half - 1] == parts[-1] == 1.0  # one batch, then three
+    assert parts[half:] == sorted(parts[half:])
