@@ -17,6 +17,9 @@ from scenarios.errors import InputError
 LARGEST = 64 * 2**20
 """Bytes of a text that is read as a whole: a scenario, a law, a result, a baseline."""
 
+PIECE = 2**16
+"""Bytes read at once."""
+
 
 def read_regular(path: Path, largest: int = LARGEST) -> bytes:
     """The content of a regular file.
@@ -31,10 +34,13 @@ def read_regular(path: Path, largest: int = LARGEST) -> bytes:
         if not stat.S_ISREG(status.st_mode):
             code = errno.EISDIR if stat.S_ISDIR(status.st_mode) else errno.EINVAL
             raise OSError(code, os.strerror(code) if code == errno.EISDIR else "not a regular file", str(path))
-        content = file.read(largest + 1)  # the size may be a lie, as of files in /proc
-    if len(content) > largest:
-        raise OSError(errno.EFBIG, f"larger than {largest} bytes", str(path))
-    return content
+        pieces, size = [], 0
+        while piece := file.read(PIECE):  # the size of a file may be a lie, as in /proc
+            size += len(piece)
+            if size > largest:
+                raise OSError(errno.EFBIG, f"larger than {largest} bytes", str(path))
+            pieces.append(piece)
+    return b"".join(pieces)
 
 
 def read_json(path: Path) -> Any:
