@@ -35,16 +35,17 @@ def sweep_command(
     Where --vary is given several times, every combination of the values is run with every seed. Rows are kept as they
     come, also those of a sweep that is stopped. Exit code 0 whatever the runs gave.
     """
+    from scenarios.studies.project import PROJECT
     from scenarios.studies.sweep import open_study, parse_seeds, sweep
     from scenarios.studies.sweep_table import print_sweep
     from scenarios.studies.variations import parse_variations
     from scenarios.terminal import new_console, progress_bar
-    from scenarios.work.pool import spread
+    from scenarios.work.spread import spread
 
     changes = options.changed(changes, plant)
     console = new_console()
     study = open_study(scenario, changes, parse_variations(varied, changes), parse_seeds(seeds))
-    with spread(workers, scheduler) as run_all, progress_bar(console, "sweep") as advance:
+    with spread(workers, scheduler, PROJECT) as run_all, progress_bar(console, "sweep") as advance:
         summaries, folder = sweep(study, out, run_all, advance)
     print_sweep(console, study, summaries, folder)
 

@@ -60,7 +60,7 @@ def reproduce(markdown: Path | None, workers: int | None) -> None:
     from scenarios.storage.files import write_text
     from scenarios.studies import reproduction
     from scenarios.terminal import new_console, progress_bar
-    from scenarios.work.pool import available_workers
+    from scenarios.work.processes import available_workers
 
     console = new_console()
     with progress_bar(console, "reproduce") as advance:

@@ -18,7 +18,7 @@ from scenarios.measures.tracking import predicted_ends
 from scenarios.simulation.loop import simulate
 from scenarios.simulation.trajectory import Trajectory
 from scenarios.studies.check.documents import markdown_table
-from scenarios.work.pool import run_all
+from scenarios.work.processes import run_all
 
 Real = NDArray[np.float64]
 

@@ -19,7 +19,7 @@ from scenarios.simulation.loop import count_periods, simulate
 from scenarios.simulation.trajectory import Trajectory
 from scenarios.storage.run_folder import write_json
 from scenarios.studies.variations import Variation, combinations
-from scenarios.work.pool import Spread
+from scenarios.work.protocol import Spread
 
 ROWS, PARTIAL, SUMMARY = "rows.csv", "rows.partial.csv", "summary.json"
 """Files of a sweep; the rows are partial until the last run is done."""

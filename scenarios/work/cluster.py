@@ -1,10 +1,11 @@
-"""Work spread over the workers of a running dask.distributed scheduler, results in the order of the tasks."""
+"""Work spread over the workers of a running dask.distributed scheduler."""
 
 from __future__ import annotations
 
 import asyncio
 import hashlib
 import importlib.metadata
+import importlib.util
 import logging
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -16,12 +17,10 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 from scenarios.errors import InputError
-from scenarios.work.pool import Result, Spread, Task
+from scenarios.work.protocol import Code, Result, Spread, Task
 
 if TYPE_CHECKING:
     from distributed import Client, Future
-
-PACKAGE = "angle-formation"
 
 CONNECTING = 10.0
 """Seconds that the scheduler has to answer."""
@@ -33,38 +32,41 @@ START_WORKERS = "start one with `dask worker {} --nthreads 1`"
 
 
 @contextmanager
-def connected(address: str) -> Iterator[Spread]:
-    """What :func:`scenarios.work.pool.run_all` does, by the workers of a scheduler. Leaving drops what is still queued.
+def connected(address: str, code: Code) -> Iterator[Spread]:
+    """What :func:`scenarios.work.processes.run_all` does, by the workers of a scheduler. Leaving drops what is queued.
 
-    A worker needs this project, in the same state; tasks carry all else, so that no file has to be there.
+    A worker needs the code, in the same state; tasks carry all else, so that no file has to be there.
 
     Args:
         address: of the scheduler, ``tcp://host:port`` or ``tls://host:port``.
+        code: what the workers have to have.
 
     Raises:
         InputError: the package is missing, the address is none or no scheduler answers there, it has no workers, or
-            one of them does not have the same version and sources of this project.
+            one of them does not have the same version and sources of the code.
     """
     _check_address(address)
     try:
         from distributed import Client
     except ImportError as error:
         raise InputError(
-            f"--scheduler: needs the package distributed: pip install '{PACKAGE}[cluster]' ({error})"
+            f"--scheduler: needs the package distributed: pip install '{code.distribution}[cluster]' ({error})"
         ) from error
     with _silent(), ExitStack() as stack:
         with _located(address):
             _check_scheduler(address)
             client = Client(address, timeout=CONNECTING, set_as_default=False)
             stack.callback(client.close, CONNECTING)  # upon which the scheduler drops what is queued
-            _check_workers(client, address)
-        yield partial(_run_all, client, address)
+            _check_workers(client, address, code)
+        yield partial(_run_all, client, address, code)
 
 
-def _run_all(client: Client, address: str, work: Callable[[Task], Result], tasks: Sequence[Task]) -> Iterator[Result]:
+def _run_all(
+    client: Client, address: str, code: Code, work: Callable[[Task], Result], tasks: Sequence[Task]
+) -> Iterator[Result]:
     from distributed import KilledWorker
 
-    run = partial(_run_here, work, sources())
+    run = partial(_run_here, work, code, sources(code.packages))
     futures = client.map(run, list(tasks), key="formation", pure=False)
     for task, future in zip(tasks, futures, strict=True):
         error = _wait(client, address, future)
@@ -83,10 +85,10 @@ def _run_all(client: Client, address: str, work: Callable[[Task], Result], tasks
         yield result
 
 
-def _run_here(work: Callable[[Task], Result], expected: str, task: Task) -> Result:
+def _run_here(work: Callable[[Task], Result], code: Code, expected: str, task: Task) -> Result:
     """On a worker, which may have come after the others were asked for their sources."""
-    if sources() != expected:
-        raise InputError(f"--scheduler: a worker that came later has {_another_state()}")
+    if sources(code.packages) != expected:
+        raise InputError(f"--scheduler: a worker that came later has {_another_state(code)}")
     return work(task)
 
 
@@ -107,12 +109,16 @@ def _wait(client: Client, address: str, future: Future[Any]) -> BaseException | 
                 return error
 
 
-@cache  # a worker that has loaded the project keeps running it, whatever becomes of its files
-def sources() -> str:
-    """Digest of the project's code as this process first saw it: a version number does not change with every edit."""
-    root, digest = Path(__file__).parents[2], hashlib.sha256()
-    for path in sorted(path for room in ("formation", "robots", "scenarios") for path in (root / room).rglob("*.py")):
-        digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
+@cache  # a worker that has loaded the code keeps running it, whatever becomes of its files
+def sources(packages: tuple[str, ...]) -> str:
+    """Digest of the packages' code as this process first saw it: a version number does not change with every edit."""
+    digest = hashlib.sha256()
+    for package in packages:
+        spec = importlib.util.find_spec(package)
+        for folder in map(Path, (spec and spec.submodule_search_locations) or ()):
+            for path in sorted(folder.rglob("*.py")):
+                name = f"{package}/{path.relative_to(folder).as_posix()}"
+                digest.update(name.encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()
 
 
@@ -144,26 +150,26 @@ def _check_scheduler(address: str) -> None:
         raise InputError(f"--scheduler {address}: expected a scheduler there, found a {found}")
 
 
-def _check_workers(client: Client, address: str) -> None:
+def _check_workers(client: Client, address: str, code: Code) -> None:
     try:
         client.wait_for_workers(1, ARRIVING)
     except TimeoutError:
         raise InputError(
             f"--scheduler {address}: has no workers after {ARRIVING:g} s, {START_WORKERS.format(address)}"
         ) from None
-    here = importlib.metadata.version(PACKAGE)
-    # Functions of the standard library first: they are there where the project is not.
-    for place, found in _ask(client, importlib.metadata.version, PACKAGE):
+    name, here = code.distribution, importlib.metadata.version(code.distribution)
+    # Functions of the standard library first: they are there where the code is not.
+    for place, found in _ask(client, importlib.metadata.version, name):
         if isinstance(found, importlib.metadata.PackageNotFoundError):
-            raise InputError(f"--scheduler {address}: {place} has no {PACKAGE}, expected {here} as here")
+            raise InputError(f"--scheduler {address}: {place} has no {name}, expected {here} as here")
         if found != here:
-            raise InputError(f"--scheduler {address}: {place} has {PACKAGE} {found}, expected {here} as here")
-    for place, found in _ask(client, sources):
-        if found != sources():
-            raise InputError(f"--scheduler {address}: {place} has {_another_state()}")
+            raise InputError(f"--scheduler {address}: {place} has {name} {found}, expected {here} as here")
+    for place, found in _ask(client, sources, code.packages):
+        if found != sources(code.packages):
+            raise InputError(f"--scheduler {address}: {place} has {_another_state(code)}")
 
 
-def _ask(client: Client, function: Callable[..., str], *arguments: str) -> Iterator[tuple[str, Any]]:
+def _ask(client: Client, function: Callable[..., str], *arguments: Any) -> Iterator[tuple[str, Any]]:
     """The answers of the scheduler, which unpacks what it passes on, and of all workers."""
     try:
         yield "the scheduler", client.run_on_scheduler(function, *arguments)
@@ -173,8 +179,9 @@ def _ask(client: Client, function: Callable[..., str], *arguments: str) -> Itera
         yield f"the worker {worker}", found
 
 
-def _another_state() -> str:
-    return f"{PACKAGE} {importlib.metadata.version(PACKAGE)} with other sources than here; update and restart it"
+def _another_state(code: Code) -> str:
+    version = importlib.metadata.version(code.distribution)
+    return f"{code.distribution} {version} with other sources than here; update and restart it"
 
 
 @contextmanager

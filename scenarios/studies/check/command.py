@@ -16,7 +16,7 @@ from scenarios.studies.check.documents import junit, markdown
 from scenarios.studies.check.tables import print_check, print_folders, print_update
 from scenarios.studies.check.update import update
 from scenarios.terminal import progress_bar
-from scenarios.work.pool import available_workers
+from scenarios.work.processes import available_workers
 
 STEP_SUMMARY = "GITHUB_STEP_SUMMARY"
 """The environment variable with the file that GitHub shows under a job."""

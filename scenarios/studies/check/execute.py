@@ -12,7 +12,7 @@ from scenarios.measures.result import result
 from scenarios.simulation.loop import periods, simulate
 from scenarios.studies.check.measures import Measures, measures
 from scenarios.studies.check.perturbed import perturbed
-from scenarios.work.pool import run_all
+from scenarios.work.processes import run_all
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ from scenarios.studies.check.machine import fingerprint, same_bits
 from scenarios.studies.check.measures import distance
 from scenarios.studies.check.perturbed import PERTURBATION, perturbed
 from scenarios.studies.check.update import update
-from scenarios.work.pool import run_all
+from scenarios.work.processes import run_all
 
 SHORT = ("duration_s=20",)
 CASES = tuple(Case(plant=plant, seeds=(0,), changes=SHORT) for plant in ("saturated", "pymunk"))

@@ -36,7 +36,7 @@ from scenarios.studies.sweep import (
     sweep,
 )
 from scenarios.studies.variations import parse_variations
-from scenarios.work.pool import run_all
+from scenarios.work.processes import run_all
 
 SHORT = ("duration_s=2",)
 

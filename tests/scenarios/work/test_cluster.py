@@ -20,9 +20,11 @@ from distributed import LocalCluster
 
 from scenarios.definition.load import LIBRARY
 from scenarios.errors import InputError
+from scenarios.studies.project import PROJECT
 from scenarios.studies.sweep import PARTIAL, ROWS, SUMMARY, open_study, sweep
 from scenarios.studies.variations import parse_variations
-from scenarios.work import cluster, pool
+from scenarios.work import cluster, processes
+from scenarios.work.spread import spread
 
 SHORT = ("duration_s=0.5",)
 
@@ -82,7 +84,7 @@ def commands(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 
 def refused(address: str, *words: str) -> None:
     """One line with the address and all the words."""
-    with pytest.raises(InputError) as caught, cluster.connected(address):
+    with pytest.raises(InputError) as caught, cluster.connected(address, PROJECT):
         pass
     message = str(caught.value)
     assert message.startswith(f"--scheduler {address}: ")
@@ -95,9 +97,9 @@ def refused(address: str, *words: str) -> None:
 
 def test_rows_are_those_of_one_process_bit_for_bit(local: Local, tmp_path: Path) -> None:
     study = open_study("shape", SHORT, parse_variations(["plant.name=pymunk,saturated"]), range(3))
-    sweep(study, tmp_path / "here", partial(pool.run_all, workers=1), lambda *_: None)
+    sweep(study, tmp_path / "here", partial(processes.run_all, workers=1), lambda *_: None)
     counts: list[tuple[int, int]] = []
-    with pool.spread(None, local(2)) as run_all:
+    with spread(None, local(2), PROJECT) as run_all:
         sweep(study, tmp_path / "there", run_all, lambda *count: counts.append(count))
     for name in (ROWS, SUMMARY):
         assert (tmp_path / "there" / name).read_bytes() == (tmp_path / "here" / name).read_bytes()
@@ -111,8 +113,8 @@ def test_workers_need_no_file_and_a_lost_worker_loses_no_row(
     Path("mine.toml").write_text((LIBRARY / "shape.toml").read_text(encoding="utf-8"), encoding="utf-8")
     study = open_study("mine.toml", (*SHORT, "safety.filter=none"), (), range(6))
     Path("mine.toml").unlink()
-    sweep(study, tmp_path / "here", partial(pool.run_all, workers=1), lambda *_: None)
-    with cluster.connected(commands) as run_all:
+    sweep(study, tmp_path / "here", partial(processes.run_all, workers=1), lambda *_: None)
+    with cluster.connected(commands, PROJECT) as run_all:
         [worker] = run_all(operator.call, [os.getpid])
         assert worker != os.getpid()
 
@@ -125,7 +127,10 @@ def test_workers_need_no_file_and_a_lost_worker_loses_no_row(
 
 
 def test_a_run_that_kills_every_worker_is_named(commands: str) -> None:
-    with cluster.connected(commands) as run_all, pytest.raises(InputError, match=r": 9: its worker was killed 2 times"):
+    with (
+        cluster.connected(commands, PROJECT) as run_all,
+        pytest.raises(InputError, match=r": 9: its worker was killed 2 times"),
+    ):
         list(run_all(signal.raise_signal, [signal.SIGKILL]))
 
 
@@ -139,7 +144,7 @@ def test_results_come_in_the_order_of_the_tasks_as_soon_as_they_are_there(local:
         assert task != 1 or held.wait(20)
         return task
 
-    with cluster.connected(local(2)) as run_all:
+    with cluster.connected(local(2), PROJECT) as run_all:
         results = run_all(in_process(work), list(range(6)))
         assert next(results) == 0
         held.set()  # not before the first one is here
@@ -147,7 +152,7 @@ def test_results_come_in_the_order_of_the_tasks_as_soon_as_they_are_there(local:
 
 
 def test_errors_of_a_task_arrive_as_they_are(local: Local) -> None:
-    with cluster.connected(local(1)) as run_all:
+    with cluster.connected(local(1), PROJECT) as run_all:
         with pytest.raises(TimeoutError, match="its own"):
             list(run_all(in_process(raising(TimeoutError("its own"))), [0]))
         with pytest.raises(InputError, match="agents: too many"):
@@ -173,7 +178,7 @@ def test_an_interrupt_drops_what_is_queued_and_keeps_the_finished_rows(
 
     study = open_study("shape", SHORT, (), range(300))
     with in_threads(1) as made:
-        with pytest.raises(KeyboardInterrupt), cluster.connected(made.scheduler_address) as run_all:
+        with pytest.raises(KeyboardInterrupt), cluster.connected(made.scheduler_address, PROJECT) as run_all:
             sweep(study, tmp_path, run_all, interrupt)
         assert eventually(lambda: [name for name in made.scheduler.clients if name.startswith("Client")], []) == []
     assert len((tmp_path / PARTIAL).read_text(encoding="utf-8").splitlines()) == 1 + 2
@@ -185,12 +190,12 @@ def test_a_scheduler_that_goes_away_and_workers_that_all_go_away_are_told(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(cluster, "ARRIVING", 0.5)
-    with in_threads(1) as made, cluster.connected(made.scheduler_address) as run_all:
+    with in_threads(1) as made, cluster.connected(made.scheduler_address, PROJECT) as run_all:
         made.sync(made.workers[0].close)
         with pytest.raises(InputError, match=r"no worker left for 0.5 s, start one with `dask worker tcp://"):
             list(run_all(abs, [-1]))
     made = in_threads(1)
-    with cluster.connected(made.scheduler_address) as run_all:
+    with cluster.connected(made.scheduler_address, PROJECT) as run_all:
         made.sync(made.workers[0].close)
         monkeypatch.setattr(cluster, "ARRIVING", 20.0)
         closing = threading.Timer(0.2, made.close)  # while the task waits for a worker
@@ -212,7 +217,10 @@ def test_an_address_that_is_none_is_refused_before_anything_is_asked(address: st
 
 
 def test_workers_and_a_scheduler_exclude_each_other() -> None:
-    with pytest.raises(InputError, match="--workers: not together with --scheduler"), pool.spread(2, "tcp://host:1"):
+    with (
+        pytest.raises(InputError, match="--workers: not together with --scheduler"),
+        spread(2, "tcp://host:1", PROJECT),
+    ):
         pass
 
 
@@ -225,7 +233,10 @@ def test_a_missing_package_is_told_with_the_extra_that_has_it(monkeypatch: pytes
         return load(name, *arguments)
 
     monkeypatch.setattr(builtins, "__import__", without_dask)
-    with pytest.raises(InputError, match=r"pip install 'angle-formation\[cluster\]'"), cluster.connected("tcp://a:1"):
+    with (
+        pytest.raises(InputError, match=r"pip install 'angle-formation\[cluster\]'"),
+        cluster.connected("tcp://a:1", PROJECT),
+    ):
         pass
 
 
@@ -272,11 +283,11 @@ def test_another_version_or_none_on_a_worker_is_told_with_both(local: Local, mon
 def test_other_sources_are_told_before_a_run_and_also_by_a_worker_that_comes_later(
     local: Local, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def differing() -> str:
+    def differing(packages: tuple[str, ...]) -> str:
         return "here" if threading.current_thread() is threading.main_thread() else "there"
 
     address = local(1)
-    with cluster.connected(address) as run_all:
+    with cluster.connected(address, PROJECT) as run_all:
         monkeypatch.setattr(cluster, "sources", differing)
         with pytest.raises(InputError, match=r"a worker that came later has .* with other sources"):
             list(run_all(in_process(abs), [-1]))

@@ -1,4 +1,4 @@
-"""Work spread over processes, results in the order of the tasks."""
+"""Work spread over the processes of this machine."""
 
 from __future__ import annotations
 
@@ -9,42 +9,9 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
-from functools import partial
-from typing import Protocol, TypeVar
 
 from scenarios.errors import InputError
-
-Task = TypeVar("Task")
-Result = TypeVar("Result")
-
-
-class Spread(Protocol):
-    """Yields ``work(task)`` of every task, in the order of the tasks, each as soon as it and all before it are done."""
-
-    def __call__(self, work: Callable[[Task], Result], tasks: Sequence[Task]) -> Iterator[Result]: ...
-
-
-@contextmanager
-def spread(workers: int | None, scheduler: str | None) -> Iterator[Spread]:
-    """Processes of this machine, or the workers of a scheduler where its address is given.
-
-    Args:
-        workers: number of processes; None for one per processor.
-        scheduler: ``tcp://host:port``; None for this machine.
-
-    Raises:
-        InputError: both are given, or the scheduler cannot be used.
-    """
-    if scheduler is None:
-        yield partial(run_all, workers=workers or available_workers())
-        return
-    if workers is not None:
-        raise InputError("--workers: not together with --scheduler, which has its own")
-    from scenarios.work import cluster  # loads dask
-
-    with cluster.connected(scheduler) as by_cluster:
-        yield by_cluster
+from scenarios.work.protocol import Result, Task
 
 
 def run_all(work: Callable[[Task], Result], tasks: Sequence[Task], workers: int) -> Iterator[Result]:
