@@ -14,7 +14,7 @@ from scenarios.measures.metrics import Metrics, measure
 from scenarios.measures.result import result
 from scenarios.recording import file, viewer
 from scenarios.recording.aside import Encoder
-from scenarios.report.printout import print_result
+from scenarios.report.result import print_result
 from scenarios.simulation.loop import simulate
 from scenarios.simulation.trajectory import Trajectory
 from scenarios.storage import run_folder

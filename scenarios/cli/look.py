@@ -25,7 +25,7 @@ def list_command() -> None:
 def show(scenario: str, seed: int, changes: tuple[str, ...]) -> None:
     """Graph, angles, assumptions, predicted rates and end of SCENARIO (a name or a file)."""
     from scenarios.definition.experiment import open_experiment
-    from scenarios.report.printout import print_experiment
+    from scenarios.report.experiment import print_experiment
     from scenarios.terminal import new_console
 
     print_experiment(new_console(), open_experiment(scenario, changes), seed)

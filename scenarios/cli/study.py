@@ -15,7 +15,6 @@ from scenarios.cli.exits import MISSED
 @options.markdown("Write the table to this file too.")
 def laws(starts: int, markdown: Path | None) -> None:
     """Compare the angle law with the displacement, bearing and distance laws."""
-    from scenarios.report.printout import print_laws
     from scenarios.storage.files import write_text
     from scenarios.studies import laws as comparison
     from scenarios.terminal import new_console, progress_bar
@@ -23,7 +22,7 @@ def laws(starts: int, markdown: Path | None) -> None:
     console = new_console()
     with progress_bar(console, "laws") as advance:
         shares = comparison.compare(starts, advance)
-    print_laws(console, shares)
+    comparison.print_laws(console, shares)
     if markdown is not None:
         write_text(markdown, comparison.markdown(shares, starts), "--markdown")
 

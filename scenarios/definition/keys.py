@@ -13,6 +13,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from scenarios.definition.schema import Scenario
+from scenarios.documents import markdown_table
 
 
 @dataclass(frozen=True)
@@ -57,8 +58,8 @@ def docstrings(table: type[BaseModel]) -> dict[str, str]:
 def markdown() -> str:
     """The reference as a Markdown page."""
     lines = ["# The scenario file", "", "Written by `formation keys --markdown docs/scenario-file.md`.", ""]
-    lines += ["| key | kind | default | meaning |", "|---|---|---|---|"]
-    lines += [f"| `{key.name}` | {key.kind} | {_code(key.default)} | {key.meaning} |" for key in keys()]
+    rows = [(f"`{key.name}`", key.kind, _code(key.default), key.meaning) for key in keys()]
+    lines += markdown_table(("key", "kind", "default", "meaning"), rows)
     return "\n".join(lines) + "\n"
 
 

@@ -1,4 +1,4 @@
-"""The colours of agents, one palette for figures and recordings.
+"""The colours of agents in figures; :mod:`scenarios.recording.views.style` has the same hues for a dark ground.
 
 Okabe and Ito's colours, which stay apart for all common kinds of colour blindness, but for their yellow, which drowns
 on white paper, and their black, which is kept for text: a dark purple and a khaki take their places.

@@ -14,7 +14,7 @@ from formation.audit import Finding, Subject, audit
 from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.definition.own_law import OwnLaw
 from scenarios.definition.schema import Scenario
-from scenarios.studies.check.documents import markdown_table
+from scenarios.documents import markdown_table
 from scenarios.studies.laws import COMPASS_BIAS_DEG, DURATION, RANDOM_START, Progress, part_of, share_reaching
 from scenarios.terminal import new_table, print_table
 

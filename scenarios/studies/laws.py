@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import astuple, dataclass
 
 import numpy as np
+from rich.console import Console
 
 from scenarios.definition.bounds import MOST_STARTS
 from scenarios.definition.experiment import Experiment, open_experiment
+from scenarios.documents import markdown_table
 from scenarios.errors import InputError
 from scenarios.simulation.loop import count_periods, simulate
+from scenarios.terminal import new_table
 
 Progress = Callable[[int, int], None]
 """Called with the number of control periods done and of all."""
@@ -26,6 +29,8 @@ BATCH_STATES = 5_000_000
 
 COMPASS_BIAS_DEG = 5.0
 """Standard deviation of the compass errors in the second column of shares."""
+
+COLUMNS = ("law", "measures", "frame", "fixes", "right shape", f"with {COMPASS_BIAS_DEG:g} deg compass error")
 
 RANDOM_START = ("random_start.x_m=[-1.4, 1.4]", "random_start.y_m=[-0.8, 0.8]")
 """Where all laws start, as changes of a scenario."""
@@ -123,21 +128,22 @@ def _share_of(on_period: Progress, done: int, runs: int, total: int) -> Progress
     return lambda period, periods: on_period(done * periods + runs * period, total * periods)
 
 
-def markdown(shares: list[Share], starts: int) -> str:
+def print_laws(console: Console, shares: Sequence[Share]) -> None:
+    """The comparison as a table."""
+    table = new_table(*COLUMNS)
+    for row in rows(shares):
+        table.add_row(*row)
+    console.print(table)
+
+
+def markdown(shares: Sequence[Share], starts: int) -> str:
     """The comparison as a Markdown page."""
-    lines = [
-        "# The laws side by side",
-        "",
-        "Written by `formation laws --markdown docs/laws.md`.",
-        "",
-        f"| law | measures | frame | fixes | right shape | with {COMPASS_BIAS_DEG:g} deg compass error |",
-        "|---|---|---|---|---:|---:|",
-    ]
-    for share in shares:
-        law = share.law
-        lines.append(
-            f"| {law.name} | {law.measures} | {law.frame} | {law.fixes} | {share.exact:.1%} | {share.biased:.1%} |"
-        )
-    lines.append("")
-    lines.append(f"{starts} random starts each, ideal single integrators, {DURATION:g} s.")
+    lines = ["# The laws side by side", "", "Written by `formation laws --markdown docs/laws.md`.", ""]
+    lines += markdown_table(COLUMNS, rows(shares), numbers=2)
+    lines += ["", f"{starts} random starts each, ideal single integrators, {DURATION:g} s."]
     return "\n".join(lines) + "\n"
+
+
+def rows(shares: Sequence[Share]) -> list[tuple[str, ...]]:
+    """The cells of each law, below :data:`COLUMNS`."""
+    return [(*astuple(share.law), f"{share.exact:.1%}", f"{share.biased:.1%}") for share in shares]

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from formation import agents, decay_rates
 from robots import GTERNAL, PLANTS
 from scenarios.definition.experiment import Experiment, open_experiment
+from scenarios.documents import cell, markdown_table
 from scenarios.measures.metrics import measure
 from scenarios.measures.result import result, versions
 from scenarios.measures.tracking import predicted_ends
 from scenarios.simulation.loop import simulate
 from scenarios.simulation.trajectory import Trajectory
-from scenarios.studies.check.documents import markdown_table
 from scenarios.work.processes import run_all
 
 Real = NDArray[np.float64]
@@ -138,7 +138,7 @@ def _angles(results: Results) -> list[str]:
     listed = open_experiment(SHAPE).scenario.target.angles_deg
     runs = [results[Trial(SHAPE, plant)]["angles"] for plant in PLANTS]
     rows = [
-        (runs[0][index]["name"], f"{degrees:g}", *(_cell(run[index]["final_deg"], ".4f") for run in runs))
+        (runs[0][index]["name"], f"{degrees:g}", *(cell(run[index]["final_deg"], ".4f") for run in runs))
         for index, degrees in enumerate(listed.values())
     ]
     return [
@@ -153,7 +153,7 @@ def _angles(results: Results) -> list[str]:
 def _ends_table(results: Results) -> list[str]:
     runs = [results[Trial(SHAPE, plant)]["phases"][-1] for plant in PLANTS]
     rows = [
-        (str(agents.number(row)), _point(place), *(_cell(run["distance_m"][row], ".1e") for run in runs))
+        (str(agents.number(row)), _point(place), *(cell(run["distance_m"][row], ".1e") for run in runs))
         for row, place in enumerate(_ends(open_experiment(SHAPE)).tolist())
     ]
     return [
@@ -175,7 +175,7 @@ def _rates(results: Results) -> list[str]:
         found = [results[Trial(SHAPE, plant, follower)]["late_rates_per_s"]["measured"][index] for plant in PLANTS]
         angle = f"{np.degrees(target.follower_angles[index]):.2f}"
         held = -np.log1p(-period * rate) / period
-        rows.append((str(follower), angle, f"{rate:.3f}", f"{held:.3f}", *(_cell(value, ".3f") for value in found)))
+        rows.append((str(follower), angle, f"{rate:.3f}", f"{held:.3f}", *(cell(value, ".3f") for value in found)))
     return [
         "## Shape: the rates",
         "",
@@ -204,8 +204,8 @@ def _phase_ends(results: Results) -> list[str]:
                 f"{np.linalg.norm(delta):.3f}",
                 *(_of(end, lambda e: f"{np.linalg.norm(_delta(e)):.3f}") for end in ends),
             ),
-            ("v - v_r (m/s)", "0", *(_of(end, lambda e: _cell(e["velocity_error_m_s"], ".1e")) for end in ends)),
-            ("angle errors (rad)", "0", *(_of(end, lambda e: _cell(e["angle_error_sum_rad"], ".1e")) for end in ends)),
+            ("v - v_r (m/s)", "0", *(_of(end, lambda e: cell(e["velocity_error_m_s"], ".1e")) for end in ends)),
+            ("angle errors (rad)", "0", *(_of(end, lambda e: cell(e["angle_error_sum_rad"], ".1e")) for end in ends)),
         ]
         velocity = _point(phase.velocity)
         lines += ["", f"At {first['end_s']:g} s, after `{phase.name}` with v_r = {velocity} m/s:", ""]
@@ -221,9 +221,9 @@ def _verdicts(results: Results) -> list[str]:
         rows = [
             ("outcome", *(run["outcome"].replace("_", " ") for run in runs)),
             ("safety filter", *(str(run["safety"]) for run in runs)),
-            ("settled after (s)", *(_cell(run["settling_time_s"], ".1f") for run in runs)),
-            ("smallest distance (m)", *(_cell(run["min_separation"]["distance_m"], ".3f") for run in runs)),
-            ("angle errors, axles (rad)", *(_cell(run["axle_angle_error_sum_rad"], ".1e") for run in runs)),
+            ("settled after (s)", *(cell(run["settling_time_s"], ".1f") for run in runs)),
+            ("smallest distance (m)", *(cell(run["min_separation"]["distance_m"], ".3f") for run in runs)),
+            ("angle errors, axles (rad)", *(cell(run["axle_angle_error_sum_rad"], ".1e") for run in runs)),
             ("the testbed", *(_verdict(run["testbed"]) for run in runs)),
         ]
         lines += ["", f"`{scenario}`:", "", *markdown_table(("", *PLANTS), rows)]
@@ -247,14 +247,10 @@ def _delta(end: dict[str, Any]) -> Real:
     return first - leader
 
 
-def _of(end: dict[str, Any] | None, cell: Callable[[dict[str, Any]], str]) -> str:
-    return "-" if end is None else cell(end)
+def _of(end: dict[str, Any] | None, shown: Callable[[dict[str, Any]], str]) -> str:
+    return "-" if end is None else shown(end)
 
 
 def _point(point: Sequence[float] | Real) -> str:
     x, y = (f"{coordinate:.3f}".rstrip("0").rstrip(".") for coordinate in np.round(point, 3) + 0.0)
     return f"({x}, {y})"
-
-
-def _cell(value: float | None, form: str) -> str:
-    return "-" if value is None else format(value, form)

@@ -7,6 +7,7 @@ from typing import Any
 import rerun as rr
 
 from scenarios.definition.experiment import Experiment
+from scenarios.documents import cell, markdown_table
 from scenarios.recording.recorder import Recorder
 
 SUMMARY = "summary"
@@ -32,22 +33,17 @@ def markdown(experiment: Experiment, result: dict[str, Any]) -> str:
     kinds = [violation["kind"] for violation in result["testbed"]["violations"]]
     rows = [
         ("outcome", f"**{result['outcome'].replace('_', ' ')}**"),
-        ("sum of angle errors", _number(result["angle_error_sum_rad"], ".2e", " rad")),
-        ("settled below the goal", _number(settled, ".1f", " s") if settled is not None else "never"),
-        ("closest pair", f"{_number(near['distance_m'], '.3f', ' m')} at {near['time_s']:.1f} s"),
+        ("sum of angle errors", cell(result["angle_error_sum_rad"], ".2e", " rad")),
+        ("settled below the goal", cell(settled, ".1f", " s") if settled is not None else "never"),
+        ("closest pair", f"{cell(near['distance_m'], '.3f', ' m')} at {near['time_s']:.1f} s"),
         ("testbed", f"**{accepted}**" + (f" ({', '.join(kinds)})" if kinds else "")),
         ("plant, safety, seed", f"{result['plant']}, {result['safety']}, {result['seed']}"),
     ]
-    table = [f"| {name} | {value} |" for name, value in rows]
-    lines = [f"**{experiment.scenario.title}**", "", table[0], "|---|---|", *table[1:]]
-    lines += ["", "| angle | target (deg) | final (deg) | error (rad) |", "|---|---|---|---|"]
-    lines += [
-        f"| {angle['name']} | {angle['target_deg']:.2f} | {_number(angle['final_deg'], '.2f')} "
-        f"| {_number(angle['error_rad'], '+.1e')} |"
-        for angle in result["angles"]
+    angles = [
+        (a["name"], cell(a["target_deg"], ".2f"), cell(a["final_deg"], ".2f"), cell(a["error_rad"], "+.1e"))
+        for a in result["angles"]
     ]
+    lines = [f"**{experiment.scenario.title}**", ""]
+    lines += markdown_table(rows[0], rows[1:])  # the outcome as the head
+    lines += ["", *markdown_table(("angle", "target (deg)", "final (deg)", "error (rad)"), angles)]
     return "\n".join(lines) + "\n"
-
-
-def _number(value: float | None, form: str, unit: str = "") -> str:
-    return "-" if value is None else f"{value:{form}}{unit}"

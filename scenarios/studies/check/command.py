@@ -11,8 +11,8 @@ from scenarios.definition.load import library
 from scenarios.errors import InputError
 from scenarios.storage.files import write_text
 from scenarios.studies.check import baseline
-from scenarios.studies.check.check import check, open_baselines, write_folders
-from scenarios.studies.check.documents import junit, markdown
+from scenarios.studies.check.repeat import check, open_baselines, write_folders
+from scenarios.studies.check.reports import junit, markdown
 from scenarios.studies.check.tables import print_check, print_folders, print_update
 from scenarios.studies.check.update import update
 from scenarios.terminal import progress_bar

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from scenarios.studies.check.baseline import Run
-from scenarios.studies.check.measures import Measures, distance, is_angle
+from scenarios.studies.check.quantities import Measures, distance, is_angle
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.measures.metrics import measure
 from scenarios.measures.result import result
 from scenarios.simulation.loop import periods, simulate
-from scenarios.studies.check.measures import Measures, measures
 from scenarios.studies.check.perturbed import perturbed
+from scenarios.studies.check.quantities import Measures, measures
 from scenarios.work.processes import run_all
 
 

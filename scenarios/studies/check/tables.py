@@ -5,9 +5,9 @@ from __future__ import annotations
 from rich.console import Console
 from rich.markup import escape
 
-from scenarios.studies.check.check import Check
 from scenarios.studies.check.compare import worst_first
-from scenarios.studies.check.documents import Folders
+from scenarios.studies.check.repeat import Check
+from scenarios.studies.check.reports import Folders
 from scenarios.studies.check.rows import CASES, LISTED, MISSES, case_rows, miss_row
 from scenarios.studies.check.update import Update
 from scenarios.terminal import new_table, print_table

@@ -12,8 +12,8 @@ from scenarios.studies.check.baseline import Baseline, LeftOut, Run
 from scenarios.studies.check.compare import Comparison, compare
 from scenarios.studies.check.execute import Done, Job, execute
 from scenarios.studies.check.machine import fingerprint
-from scenarios.studies.check.measures import distance, is_angle, tolerance
 from scenarios.studies.check.perturbed import COPIES
+from scenarios.studies.check.quantities import distance, is_angle, tolerance
 
 REPRODUCIBLE = 2.5e-4
 """Radians: a run whose angles need a larger tolerance is left out. A thousandth of a radian has to be seen."""

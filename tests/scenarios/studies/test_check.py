@@ -23,8 +23,8 @@ from scenarios.studies.check import baseline as baselines
 from scenarios.studies.check import command
 from scenarios.studies.check.baseline import Baseline, Case, default_cases
 from scenarios.studies.check.machine import fingerprint, same_bits
-from scenarios.studies.check.measures import distance
 from scenarios.studies.check.perturbed import PERTURBATION, perturbed
+from scenarios.studies.check.quantities import distance
 from scenarios.studies.check.update import update
 from scenarios.work.processes import run_all
 

@@ -1,0 +1,131 @@
+"""What is known of an experiment before it runs: graph, assumptions, predicted rates and ends."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.markup import escape
+
+from formation import agents, collision_margins, decay_rates, end_similarity
+from scenarios.definition.experiment import Experiment
+from scenarios.documents import cell
+from scenarios.measures.forecast import NEAR, PhaseForecast, forecast
+from scenarios.measures.misfits import misfits
+from scenarios.measures.tracking import predicted_late_rates
+from scenarios.report.cells import NO_PREDICTION, place
+from scenarios.terminal import new_table
+
+
+def print_experiment(console: Console, experiment: Experiment, seed: int) -> None:
+    """Graph, angles, assumptions, predicted rates and end configurations."""
+    console.print(f"[bold]{escape(experiment.file.name)}[/bold]: {escape(experiment.scenario.title)}")
+    if experiment.file.description:
+        console.print(escape(experiment.file.description), style="dim")
+    start = experiment.initial_points(seed)
+    predicted = forecast(experiment, start)
+    _print_assumptions(console, experiment, start)
+    _print_agents(console, experiment, start, predicted[-1].end)
+    if experiment.predicted:
+        _print_forecast(console, experiment, predicted)
+        for misfit in misfits(experiment, start):
+            console.print(f"does not fit: {escape(misfit)}", style="bold")
+    else:
+        console.print(f"\n{NO_PREDICTION}")
+    table = new_table("angle", "target (deg)")
+    for name, value in zip(experiment.angles.names, np.degrees(experiment.target_angles), strict=True):
+        table.add_row(name, f"{value:.4f}")
+    console.print("\n[bold]Angles, counter-clockwise, alpha(vertex;from,to)[/bold]")
+    console.print(table)
+
+
+def _print_assumptions(console: Console, experiment: Experiment, start: Any) -> None:
+    graph, target = experiment.graph, experiment.target
+    sine = np.abs(np.sin(target.follower_angles))
+    worst = int(sine.argmin())
+    flattest = tuple(agents.numbers(graph.triangles[worst]).tolist())
+    distance = float(np.linalg.norm(start[agents.FIRST_FOLLOWER] - start[agents.LEADER]))
+    console.print("\n[bold]Assumptions[/bold]")
+    console.print(
+        f"  1  leader-first-follower sensing graph: holds, {graph.n} agents, {len(graph.edges)} edges, "
+        f"depth {graph.depth.max()}"
+    )
+    console.print(
+        f"  2  strongly nondegenerate target: holds, flattest triangle {flattest}, "
+        f"|sin| = {sine[worst]:.3f} at {agents.name(graph.followers[worst])}"
+    )
+    console.print(f"  p_1(0) != p_2(0): holds, {distance:.3f} m apart\n")
+
+
+def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any) -> None:
+    graph, target = experiment.graph, experiment.target
+    rates, late = decay_rates(target), predicted_late_rates(experiment)
+    margins = collision_margins(target, start, end)
+    at_rest = len(experiment.phases) == 1 and not any(experiment.phases[0].velocity)
+    still = at_rest and experiment.predicted  # the premise of Lemma 3
+    table = new_table(
+        "agent",
+        "senses",
+        "depth",
+        "follower angle (deg)",
+        "sin^2 (1/s)",
+        "late rate (1/s)",
+        "start (m)",
+        "end (m)",
+        "margin of (c3) (m)",
+    )
+    for row in range(graph.n):
+        follower = row - agents.FIRST_ORDINARY
+        senses = [str(agents.number(i)) for k, i in graph.edges if k == row]
+        cells = ["-"] * 4
+        if follower >= 0:
+            cells = [
+                f"{np.degrees(target.follower_angles[follower]):.2f}",
+                f"{rates[follower]:.4f}",
+                "-" if late is None else f"{late[follower]:.4f}",
+                f"{margins[follower]:+.3f}" if still else "-",
+            ]
+        table.add_row(
+            str(agents.number(row)),
+            ", ".join(senses) or "-",
+            str(graph.depth[row]),
+            *cells[:3],
+            place(start[row]),
+            place(end[row]) if experiment.predicted else "-",
+            cells[3],
+        )
+    console.print(table)
+    if still:
+        console.print("(c3): a follower with a positive margin that starts after its neighbours settled avoids both")
+
+
+def _print_forecast(console: Console, experiment: Experiment, predicted: list[PhaseForecast]) -> None:
+    table = new_table(
+        "phase",
+        "until (s)",
+        "v_r (m/s)",
+        "delta (m)",
+        "scale c",
+        "theta (deg)",
+        "xi (m)",
+        "angle error sum (rad)",
+        f"within {NEAR:g} m after (s)",
+    )
+    until = 0.0
+    for phase, ahead in zip(experiment.phases, predicted, strict=True):
+        until += phase.duration
+        similarity = end_similarity(experiment.target, *ahead.end[: agents.FIRST_ORDINARY])
+        table.add_row(
+            escape(phase.name),
+            f"{until:g}",
+            place(phase.velocity),
+            "-" if phase.delta is None else place(phase.delta),
+            f"{similarity.scale:.4f}",
+            f"{np.degrees(similarity.angle):.2f}",
+            place(similarity.translation),
+            cell(ahead.error_sum, ".2e"),
+            cell(ahead.arrival, ".1f"),
+        )
+    console.print("\n[bold]Predicted end of each phase, c R(theta) p* + xi, for ideal single integrators[/bold]")
+    console.print(table)

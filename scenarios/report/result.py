@@ -1,0 +1,146 @@
+"""What a run gave, from the content of its ``result.json`` and nothing else."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rich.console import Console
+from rich.markup import escape
+
+from formation import agents
+from scenarios.documents import cell
+from scenarios.report.cells import NO_PREDICTION, place
+from scenarios.terminal import new_table
+
+
+def print_result(console: Console, result: dict[str, Any]) -> None:
+    """Final angle errors, predicted beside measured ends, and the testbed's verdict."""
+    table = new_table("angle", "target (deg)", "final (deg)", "error (rad)", "axle error (rad)")
+    for angle in result["angles"]:
+        table.add_row(
+            angle["name"],
+            f"{angle['target_deg']:.4f}",
+            cell(angle["final_deg"], ".4f"),
+            cell(angle["error_rad"], "+.2e"),
+            cell(angle["axle_error_rad"], "+.2e"),
+        )
+    table.add_section()
+    total, axle = result["angle_error_sum_rad"], result["axle_angle_error_sum_rad"]
+    table.add_row("sum of |error|", "", "", cell(total, ".2e"), cell(axle, ".2e"), style="bold")
+    console.print(table)
+    console.print()
+    _print_phases(console, result)
+    if result["phases"]:
+        _print_ends(console, result)
+    settled = result["settling_time_s"]
+    settling = "never" if settled is None else f"after {settled:.1f} s"
+    console.print(f"settled below {result['goal_rad']:g} rad: {settling}")
+    near = result["min_separation"]
+    if near["distance_m"] is not None:
+        console.print(
+            f"smallest separation: {near['distance_m']:.3f} m at {near['time_s']:.1f} s, "
+            f"agents {near['agents'][0]} and {near['agents'][1]}"
+        )
+    _print_safety(console, result)
+    if result["plant"] == "pymunk":
+        console.print(f"contacts: {_contacts(result['contacts'])}")
+    testbed = result["testbed"]
+    console.print(f"testbed: {'[green]accepted' if testbed['accepted'] else '[red]rejected'}")
+    for violation in testbed["violations"]:
+        console.print(f"  {_describe(violation)}")
+    console.print(f"outcome: [bold]{result['outcome'].replace('_', ' ')}[/bold]")
+
+
+def _print_phases(console: Console, result: dict[str, Any]) -> None:
+    table = new_table(
+        "phase",
+        "until (s)",
+        "angle error sum (rad)",
+        "axle sum (rad)",
+        "scale error",
+        "orientation error (rad)",
+        "translation error (m)",
+    )
+    for phase in result["phases"]:
+        table.add_row(
+            escape(phase["name"]),
+            f"{phase['end_s']:.1f}",
+            cell(phase["angle_error_sum_rad"], ".2e"),
+            cell(phase["axle_angle_error_sum_rad"], ".2e"),
+            cell(phase["scale_error"], "+.1e"),
+            cell(phase["orientation_error_rad"], "+.1e"),
+            cell(phase["translation_error_m"], ".1e"),
+        )
+    console.print(table)
+    console.print()
+
+
+def _print_ends(console: Console, result: dict[str, Any]) -> None:
+    """Predicted beside measured: the end of the last phase and the late decay rates."""
+    last, rates = result["phases"][-1], result["late_rates_per_s"]
+    nowhere = [None] * len(last["measured_m"])
+    table = new_table(
+        "agent", "predicted end (m)", "measured (m)", "distance (m)", "predicted late rate (1/s)", "measured (1/s)"
+    )
+    for row, (predicted, measured, distance) in enumerate(
+        zip(last["predicted_m"] or nowhere, last["measured_m"], last["distance_m"] or nowhere, strict=True)
+    ):
+        follower = row - agents.FIRST_ORDINARY
+        late = [rates[kind][follower] if follower >= 0 and rates[kind] else None for kind in ("predicted", "measured")]
+        table.add_row(
+            str(agents.number(row)),
+            "-" if predicted is None else place(predicted),
+            place(measured),
+            cell(distance, ".1e"),
+            *(cell(rate, ".3f") for rate in late),
+        )
+    console.print(table)
+    if last["predicted_m"] is None:
+        console.print(NO_PREDICTION)
+    console.print()
+
+
+def _print_safety(console: Console, result: dict[str, Any]) -> None:
+    """What the filter did, if there was one."""
+    if result["safety"] == "none":
+        console.print("safety filter: none")
+        return
+    share, relaxed = result["interventions"]["share"], result["relaxed"]
+    console.print(f"safety filter: {result['safety']}, changed {100 * share:.1f} % of the commands")
+    if relaxed["count"]:
+        console.print(
+            f"  {relaxed['count']} of {relaxed['of']} problems infeasible, relaxed by at most "
+            f"{relaxed['largest_m_s']:.1e} m/s"
+        )
+        for entry in relaxed["agents"]:
+            first = entry["first"]
+            console.print(
+                f"  agent {entry['agent']}: {entry['count']}, first at {first['time_s']:.2f} s "
+                f"by {', '.join(first['rows'])}"
+            )
+    for deadlock in result["deadlocks"]:
+        until = deadlock["until_s"]
+        end = "never broken" if until is None else f"broken at {until:.1f} s"
+        console.print(f"  deadlock of agent {deadlock['agent']} declared at {deadlock['from_s']:.1f} s, {end}")
+
+
+def _contacts(contacts: dict[str, Any]) -> str:
+    if contacts["first"] is None:
+        return "none"
+    who = " and ".join(str(agent) for agent in contacts["first"]["agents"])
+    return f"in {contacts['periods']} control periods, first agents {who} at {contacts['first']['time_s']:.2f} s"
+
+
+def _describe(violation: dict[str, Any]) -> str:
+    first = violation["first"]
+    who = " and ".join(str(agent) for agent in first["agents"])
+    where = f"first at {first['time_s']:.2f} s, {place(first['place_m'])} m, {violation['steps']} steps"
+    match violation["kind"]:
+        case "floor":
+            return f"agent {who} leaves the floor; {where}"
+        case "obstacle":
+            return f"agent {who} comes within {first['value']:.3f} m of an obstacle; {where}"
+        case "collision":
+            return f"agents {who} come within {first['value']:.3f} m; {where}"
+        case _:
+            return f"agent {who} commands a wheel to {cell(first['value'], '.4g')} rad/s (warning); {where}"
