@@ -89,7 +89,9 @@ def separation(centres: Real) -> Separation:
         return Separation(np.full(steps, np.inf), np.zeros((steps, 2), dtype=np.intp))
     pairs = closest_pairs(np.ascontiguousarray(centres))
     one, other = (np.take_along_axis(centres, pairs[:, k, None, None], axis=1)[:, 0] for k in (0, 1))
-    return Separation(np.abs(np.ascontiguousarray(one - other).view(np.complex128)[:, 0]), pairs)
+    with np.errstate(invalid="ignore"):  # a state that is not finite has no separation
+        gap = one - other
+    return Separation(np.abs(np.ascontiguousarray(gap).view(np.complex128)[:, 0]), pairs)
 
 
 def judge(
