@@ -9,6 +9,7 @@ import errno
 import json
 import os
 import stat
+from io import BufferedReader
 from pathlib import Path
 from typing import Any
 
@@ -28,19 +29,29 @@ def read_regular(path: Path, largest: int = LARGEST) -> bytes:
         OSError: there is none, it cannot be read, is not a regular file, or is larger than ``largest`` bytes.
         ValueError: the path has a null byte.
     """
-    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK)  # a pipe without a writer would wait for one
-    with open(descriptor, "rb") as file:
-        status = os.fstat(descriptor)
-        if not stat.S_ISREG(status.st_mode):
-            code = errno.EISDIR if stat.S_ISDIR(status.st_mode) else errno.EINVAL
-            raise OSError(code, os.strerror(code) if code == errno.EISDIR else "not a regular file", str(path))
-        pieces, size = [], 0
+    pieces, size = [], 0
+    with open_regular(path) as file:
         while piece := file.read(PIECE):  # the size of a file may be a lie, as in /proc
             size += len(piece)
             if size > largest:
                 raise OSError(errno.EFBIG, f"larger than {largest} bytes", str(path))
             pieces.append(piece)
     return b"".join(pieces)
+
+
+def open_regular(path: Path) -> BufferedReader:
+    """Open a regular file of any size to read.
+
+    Raises:
+        OSError: there is none, or it cannot be read.
+        ValueError: the path has a null byte.
+    """
+    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK)  # a pipe without a writer would wait for one
+    if not stat.S_ISREG(mode := os.fstat(descriptor).st_mode):
+        os.close(descriptor)
+        code = errno.EISDIR if stat.S_ISDIR(mode) else errno.EINVAL
+        raise OSError(code, os.strerror(code) if code == errno.EISDIR else "not a regular file", str(path))
+    return os.fdopen(descriptor, "rb")
 
 
 def read_json(path: Path) -> Any:

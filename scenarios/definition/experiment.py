@@ -47,6 +47,7 @@ class Experiment:
         phases: the maneuver, a single phase for shape control.
         law: the formation law.
         estimator: how agents learn v_r; None where it is broadcast.
+        asked_duration: seconds that replaced the scenario's own; None where none did.
     """
 
     file: ScenarioFile
@@ -62,6 +63,7 @@ class Experiment:
     robot: RobotModel
     arena: Arena
     filter_settings: FilterSettings
+    asked_duration: float | None = None
 
     @property
     def scenario(self) -> Scenario:
@@ -160,6 +162,7 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
         robot=robot,
         arena=arena,
         filter_settings=_filter_settings(path, scenario),
+        asked_duration=duration,
     )
 
 

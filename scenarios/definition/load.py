@@ -52,14 +52,18 @@ class ScenarioFile:
 
         Of an own law its source counts, wherever its file is.
         """
-        data = self.scenario.model_dump(mode="json")
-        law = data["law"]
-        if self.law is not None:
-            law["file"] = self.law.sha256
-        else:
-            for key in OWN_LAW_KEYS:
-                del law[key]
-        return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
+        return digest(self.scenario.model_dump(mode="json"), self.law)
+
+
+def digest(content: Mapping[str, Any], own_law: LawFile | None) -> str:
+    """Digest of a validated scenario's content as JSON has it; see :attr:`ScenarioFile.sha256`."""
+    law = dict(content.get("law", {}))
+    if own_law is not None:
+        law["file"] = own_law.sha256
+    else:
+        for key in OWN_LAW_KEYS:
+            law.pop(key, None)
+    return hashlib.sha256(json.dumps({**content, "law": law}, sort_keys=True).encode()).hexdigest()
 
 
 def library() -> list[str]:

@@ -16,8 +16,8 @@ from scenarios.measures.metrics import Metrics, PhaseEnd
 from scenarios.measures.safety_result import safety_result
 from scenarios.measures.tracking import Tracking, predicted_late_rates
 from scenarios.simulation.trajectory import Trajectory
+from scenarios.storage.result_schema import SCHEMA_VERSION
 
-SCHEMA_VERSION = 1
 RECORDED_PACKAGES = ("angle-formation", "numpy", "pymunk", "numba", "daqp")
 """Versions that a result depends on."""
 
@@ -37,6 +37,7 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
         "versions": versions(),
         "duration_s": float(trajectory.t[-1]),
         "planned_duration_s": float(sum(phase.duration for phase in experiment.phases)),
+        "asked_duration_s": experiment.asked_duration,
         "outcome": metrics.outcome,
         "goal_rad": experiment.goal,
         "angles": [

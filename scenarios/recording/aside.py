@@ -62,7 +62,7 @@ def main() -> None:
     from scenarios.recording.encode import encode_run
 
     if folder := sys.stdin.buffer.read():
-        sys.stdout.buffer.write(encode_run(run_folder.read(Path(os.fsdecode(folder)))))
+        sys.stdout.buffer.write(encode_run(run_folder.read(Path(os.fsdecode(folder)), under_way=True)))
 
 
 if __name__ == "__main__":

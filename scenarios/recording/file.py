@@ -6,8 +6,10 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from pathlib import Path
+
+from scenarios.reading import open_regular, read_regular
+from scenarios.storage.files import put
 
 
 def write(path: Path, content: bytes) -> None:
@@ -16,8 +18,8 @@ def write(path: Path, content: bytes) -> None:
     Raises:
         OSError: the disk is full or the folder cannot be written.
     """
-    _replace(path, content)
-    _replace(_digest_of(path), f"{hashlib.sha256(content).hexdigest()}  {path.name}\n".encode())
+    put(path, content)
+    put(_digest_of(path), f"{hashlib.sha256(content).hexdigest()}  {path.name}\n".encode())
 
 
 def damage(path: Path) -> str | None:
@@ -25,8 +27,9 @@ def damage(path: Path) -> str | None:
     if not path.is_file():
         return "missing"
     try:
-        digest = _digest_of(path).read_text(encoding="ascii").split()[0]
-        return None if digest == hashlib.sha256(path.read_bytes()).hexdigest() else "damaged"
+        digest = read_regular(_digest_of(path)).decode("ascii").split()[0]
+        with open_regular(path) as content:
+            return None if digest == hashlib.file_digest(content, "sha256").hexdigest() else "damaged"
     except (OSError, ValueError, IndexError):
         return "damaged"
 
@@ -34,12 +37,3 @@ def damage(path: Path) -> str | None:
 def _digest_of(path: Path) -> Path:
     """The file that ``sha256sum --check`` takes."""
     return path.with_suffix(".sha256")
-
-
-def _replace(path: Path, content: bytes) -> None:
-    scratch = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        scratch.write_bytes(content)
-        os.replace(scratch, path)
-    finally:
-        scratch.unlink(missing_ok=True)

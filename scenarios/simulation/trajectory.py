@@ -8,8 +8,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.errors import InputError
-
 Real = NDArray[np.float64]
 
 
@@ -61,19 +59,9 @@ class Trajectory:
         return Trajectory(*(getattr(self, field.name)[first:end] for field in fields(self)))
 
     def save(self, path: Path, angle_errors: Real) -> None:
-        """Write ``trajectory.npz``, with the angle errors (T, m), radians, beside the states."""
+        """Write ``trajectory.npz``, with the angle errors (T, m), radians, beside the states.
+
+        :mod:`scenarios.storage.states` reads it back.
+        """
         states = {field.name: getattr(self, field.name) for field in fields(self)}
         np.savez_compressed(path, angle_errors=angle_errors, **states)
-
-    @classmethod
-    def read(cls, path: Path) -> Trajectory:
-        """Read ``trajectory.npz``.
-
-        Raises:
-            InputError: the file is missing or damaged.
-        """
-        try:
-            with path.open("rb") as file, np.load(file) as data:  # numpy leaves a damaged archive open
-                return cls(*(data[field.name] for field in fields(cls)))
-        except Exception as error:  # numpy and zipfile raise many kinds for damaged files
-            raise InputError(f"{path}: cannot be read: {error}") from error

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import math
 import os
-import shutil
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -13,11 +13,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scenarios.errors import InputError
+from scenarios.reading import read_json
+from scenarios.storage import manifest, scratch
 
 if TYPE_CHECKING:
     from scenarios.definition.experiment import Experiment
     from scenarios.definition.load import ScenarioFile
+    from scenarios.definition.schema import Scenario
     from scenarios.simulation.trajectory import Trajectory
+    from scenarios.storage.result_schema import Result
 
 RESULT = "result.json"
 TRAJECTORY = "trajectory.npz"
@@ -55,78 +59,160 @@ def writing(folder: Path) -> Iterator[Path]:
     """A scratch folder beside ``folder`` that takes its place when the block ends well and vanishes when it does not.
 
     Entering proves that the place can be written, before anything is computed. An older run in the same place is
-    replaced; anything else is left alone.
+    replaced, where everything in it is as the project wrote it; anything else is left alone.
 
     Raises:
-        InputError: the place cannot be written, now or later (a full disk), or holds something that is not a run.
+        InputError: the place cannot be written, now or later (a full disk), another process is writing it, or it holds
+            something that no run wrote. Where that came while the block ran, what the block made is kept beside it.
     """
     try:
         place = Path(os.path.realpath(folder))  # what a link points to is replaced, not the link
-        if place.exists() and not is_run(place) and (not place.is_dir() or any(place.iterdir())):
-            raise InputError(f"--out {folder}: exists and is not a run folder")
-        place.parent.mkdir(parents=True, exist_ok=True)
-        parent = Path(tempfile.mkdtemp(prefix=f".{place.name[:100]}.", dir=place.parent))
+        if (reason := _taken(place)) is not None:
+            raise InputError(f"--out {folder}: {reason}; move it, or name another folder")
+        with scratch.beside(place, exclusive=True) as room:
+            new = room / "new"
+            new.mkdir()
+            yield new
+            manifest.write(new)
+            if (reason := _take(place, new, room)) is not None:
+                kept = _keep_beside(place, new)
+                raise InputError(f"--out {folder}: {reason}, and was left alone; the run is kept in {kept}")
     except OSError as error:
         raise InputError(f"--out {folder}: cannot be written: {error.strerror}") from error
-    scratch, older = parent / "new", parent / "old"
+
+
+def _taken(place: Path) -> str | None:
+    """Why nothing may stand in a place, in words for a message; None where it is free or holds a run alone."""
     try:
-        scratch.mkdir()
-        yield scratch
-        if place.exists():
-            os.replace(place, older)  # whole, so that no half-deleted folder ever stands in its place
-        os.replace(scratch, place)
+        os.lstat(place)
+    except FileNotFoundError:
+        return None
+    if not place.is_dir():
+        return "exists and is not a run folder"
+    scratch.sweep(place)
+    return manifest.foreign(place)
+
+
+def _take(place: Path, new: Path, room: Path) -> str | None:
+    """Put the folder ``new`` in its place, and what the place held aside; why that must not be, else None."""
+    if (reason := _taken(place)) is not None:
+        return reason
+    aside = room / scratch.ASIDE / place.name
+    if place.exists():
+        aside.parent.mkdir()
+        os.replace(place, aside)  # whole, so that no half-deleted folder ever stands in its place
+        if (reason := manifest.foreign(aside)) is not None:
+            os.replace(aside, place)
+            return reason
+    try:
+        os.replace(new, place)
     except OSError as error:
-        raise InputError(f"--out {folder}: cannot be written: {error.strerror}") from error
-    finally:
-        if older.exists() and not place.exists():
-            os.replace(older, place)
-        shutil.rmtree(parent, ignore_errors=True)
+        if error.errno not in (errno.ENOTEMPTY, errno.EEXIST, errno.ENOTDIR):
+            raise
+        return "appeared while the run was under way"
+    return None
+
+
+def _keep_beside(place: Path, new: Path) -> Path:
+    """Put the folder ``new`` beside a place that is taken."""
+    number = 2
+    while True:
+        beside = place.with_name(f"{place.name}-{number}")
+        try:
+            beside.mkdir()
+        except FileExistsError:
+            number += 1
+        else:
+            os.replace(new, beside)
+            return beside
 
 
 def is_run(folder: Path) -> bool:
-    """Whether ``folder`` holds a run."""
+    """Whether ``folder`` holds a finished run, and not one that is under way or was killed."""
+    return _looks_like_run(folder) and not scratch.is_scratch(folder)
+
+
+def _looks_like_run(folder: Path) -> bool:
     return (folder / RESULT).is_file() and (folder / TRAJECTORY).is_file()
 
 
-def read(folder: Path) -> Run:
-    """Read a run folder back.
+def read(folder: Path, under_way: bool = False) -> Run:
+    """Read a run folder back, and check all that is read.
+
+    Args:
+        folder: of the run.
+        under_way: whether it may be the scratch of a run that is not in its place yet.
 
     Raises:
-        InputError: it is not a run folder, or one of its files is missing, damaged or of another run.
+        InputError: it is not a run folder, or one of its files is missing, damaged, edited or of another run.
     """
     # The command line imports this module before it knows its command; only reading needs the whole experiment.
-    from scenarios.definition import law_file
     from scenarios.definition.experiment import build
-    from scenarios.definition.load import ScenarioFile, validate
-    from scenarios.simulation.trajectory import Trajectory
+    from scenarios.storage import result_schema, states
 
     if not folder.exists():
         raise InputError(f"{folder}: no such run folder")
-    if not is_run(folder):
+    if not _looks_like_run(folder):
         raise InputError(f"{folder}: not a run folder, it holds no {RESULT} and {TRAJECTORY}")
-    result, scenario_path = _read_json(folder / RESULT), folder / SCENARIO
-    for key, kind in (("scenario", str), ("seed", int), ("planned_duration_s", float)):
-        if not isinstance(result.get(key), kind):
-            raise InputError(f"{folder / RESULT}: {key}: expected {kind.__name__}, got {result.get(key)!r}")
-    scenario = validate(_read_json(scenario_path), str(scenario_path))
-    law = None if scenario.law.file is None else law_file.read(str(scenario_path), folder, scenario.law.file)
-    file = ScenarioFile(result["scenario"], str(scenario_path), "", scenario, law)
-    experiment = build(file, result["planned_duration_s"], to_run=False)
-    trajectory = Trajectory.read(folder / TRAJECTORY)
-    rows, n = trajectory.t.size, experiment.n
-    expected = {
-        "t": (max(rows, 1),),
-        "poses": (rows, n, 3),
-        "points": (rows, n, 2),
-        "wheel_speeds": (rows, n, 2),
-        "phase": (rows,),
-        "active": (rows, n),
-    }
-    for key, shape in expected.items():
-        found = getattr(trajectory, key).shape
-        if found != shape:
-            raise InputError(f"{folder / TRAJECTORY}: {key}: expected the shape {shape}, got {found}")
-    return Run(folder, experiment, trajectory, result)
+    if not under_way and scratch.is_scratch(folder):
+        raise InputError(f"{folder}: not a finished run, its process still works or was killed; make the run again")
+    content = read_json(folder / RESULT)
+    result = result_schema.check(folder / RESULT, content)
+    file = _read_scenario(folder, result)
+    experiment = build(file, _asked_duration(file.scenario, result), to_run=False)
+    for key, recorded, expected in (
+        ("plant", result.plant, experiment.plant),
+        ("safety", result.safety, experiment.safety),
+        ("goal_rad", result.goal_rad, experiment.goal),
+        ("angles", [angle.name for angle in result.angles], list(experiment.angles.names)),
+    ):
+        if recorded != expected:
+            raise InputError(f"{folder / RESULT}: {key}: expected {expected!r} as in {SCENARIO}, got {recorded!r:.80}")
+    planned = sum(phase.duration for phase in experiment.phases)
+    if not math.isclose(result.planned_duration_s, planned):
+        raise InputError(
+            f"{folder / RESULT}: planned_duration_s: expected {planned:g}, got {result.planned_duration_s:g}"
+        )
+    trajectory = states.read(folder / TRAJECTORY, experiment)
+    if trajectory.t[-1] != result.duration_s:
+        raise InputError(
+            f"{folder / TRAJECTORY}: t: expected {result.duration_s!r} s at the end as in {RESULT}, "
+            f"got {float(trajectory.t[-1])!r}"
+        )
+    for name in (RESULT, TRAJECTORY):
+        if manifest.changed(folder / name):
+            raise InputError(f"{folder / name}: changed since the run wrote it ({manifest.NAME}); make the run again")
+    return Run(folder, experiment, trajectory, content)
+
+
+def _read_scenario(folder: Path, result: Result) -> ScenarioFile:
+    """The scenario of a run, as it was when the run was made.
+
+    Raises:
+        InputError: it cannot be used, or is another one.
+    """
+    from scenarios.definition import law_file
+    from scenarios.definition.load import ScenarioFile, digest, validate
+
+    path = folder / SCENARIO
+    content = read_json(path)
+    scenario = validate(content, str(path))
+    law = None
+    if scenario.law.file is not None:
+        if scenario.law.file != LAW:
+            raise InputError(f"{path}: law.file: expected {LAW!r}, in the run folder, got {scenario.law.file!r:.80}")
+        law = law_file.read(str(path), folder, LAW)
+    if digest(content, law) != result.scenario_sha256:
+        raise InputError(f"{path}: not what {RESULT} says was run (scenario_sha256): edited since, or of another run")
+    return ScenarioFile(result.scenario, str(path), "", scenario, law)
+
+
+def _asked_duration(scenario: Scenario, result: Result) -> float | None:
+    """The seconds that replaced the scenario's own; None where none did."""
+    if result.asked_duration_s is not None:
+        return result.asked_duration_s
+    own = sum(phase.duration_s for phase in scenario.phases) or scenario.duration_s
+    return None if own == result.planned_duration_s else result.planned_duration_s
 
 
 def write_scenario(folder: Path, file: ScenarioFile) -> None:
@@ -136,16 +222,6 @@ def write_scenario(folder: Path, file: ScenarioFile) -> None:
         content["law"]["file"] = LAW
         (folder / LAW).write_bytes(file.law.source)
     write_json(folder / SCENARIO, content)
-
-
-def _read_json(path: Path) -> dict[str, Any]:
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise InputError(f"{path}: cannot be read: {error}") from error
-    if not isinstance(content, dict):
-        raise InputError(f"{path}: expected a JSON object, got {type(content).__name__}")
-    return content
 
 
 def write_json(path: Path, content: Any) -> None:

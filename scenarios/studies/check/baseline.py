@@ -14,6 +14,7 @@ from scenarios.definition.experiment import Experiment
 from scenarios.definition.load import library
 from scenarios.errors import InputError, did_you_mean
 from scenarios.reading import read_regular
+from scenarios.storage.files import write_whole
 
 FOLDER = Path(__file__).parents[2] / "baselines"
 """The library's baselines."""
@@ -180,13 +181,7 @@ def write(path: Path, baseline: Baseline) -> None:
     Raises:
         InputError: it cannot be written.
     """
-    scratch = path.with_name(f".{path.name}")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        scratch.write_text(_text(baseline.model_dump(mode="json")), encoding="utf-8")
-        os.replace(scratch, path)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+    write_whole(path, _text(baseline.model_dump(mode="json")).encode())
 
 
 def _text(content: dict[str, Any]) -> str:

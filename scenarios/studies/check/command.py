@@ -9,7 +9,7 @@ from rich.console import Console
 
 from scenarios.definition.load import library
 from scenarios.errors import InputError
-from scenarios.storage.files import write_text
+from scenarios.storage.files import prove_writable, write_text
 from scenarios.studies.check import baseline
 from scenarios.studies.check.repeat import check, open_baselines, write_folders
 from scenarios.studies.check.reports import junit, markdown
@@ -46,7 +46,7 @@ def check_command(
         raise InputError(f"--baselines {folder or baseline.FOLDER}: holds no baseline, `--update` makes them")
     reports = [(path, option) for path, option in ((junit_path, "--junit"), (markdown_path, "--markdown")) if path]
     for path, option in reports:
-        _prove_writable(path, option)
+        prove_writable(path, option)
     with progress_bar(console, "check") as advance:
         outcome = check(opened, workers or available_workers(), advance)
     print_check(console, outcome)
@@ -90,12 +90,3 @@ def update_command(scenarios: tuple[str, ...], folder: Path | None, workers: int
 
 def _all_in(folder: Path) -> list[str]:
     return [baseline.scenario_of(baseline.read(path), folder) for path in baseline.baselines_in(folder)]
-
-
-def _prove_writable(path: Path, option: str) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with path.open("a", encoding="utf-8"):
-            pass
-    except OSError as error:
-        raise InputError(f"{option} {path}: cannot be written: {error.strerror}") from error

@@ -1,16 +1,13 @@
 """Run folders: written whole or not at all."""
 
 import os
-from collections.abc import Callable
-from dataclasses import fields
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from scenarios.errors import InputError
-from scenarios.simulation.trajectory import Trajectory
-from scenarios.storage import run_folder
+from scenarios.storage import manifest, run_folder
+from scenarios.storage.files import write_whole
 from scenarios.storage.run_folder import is_run, writing
 
 
@@ -60,9 +57,8 @@ def test_an_older_run_is_replaced_by_a_finished_one_and_survives_an_interrupted_
     with pytest.raises(RuntimeError):
         interrupted()
     assert (folder / run_folder.RESULT).read_text(encoding="utf-8") == "old"
-    (folder / "figure.png").touch()
     run_of(folder, "new")
-    assert sorted(os.listdir(folder)) == sorted([run_folder.RESULT, run_folder.TRAJECTORY])
+    assert sorted(os.listdir(folder)) == sorted([manifest.NAME, run_folder.RESULT, run_folder.TRAJECTORY])
     assert (folder / run_folder.RESULT).read_text(encoding="utf-8") == "new"
     assert os.listdir(tmp_path) == ["run"]
 
@@ -122,21 +118,93 @@ def test_a_place_that_cannot_be_written_is_refused_before_the_run(tmp_path: Path
     assert not entered
 
 
-def test_a_trajectory_read_again_is_bit_identical(tmp_path: Path, recorded: Callable[..., Trajectory]) -> None:
-    rng = np.random.default_rng(0)
-    poses, points = rng.normal(size=(5, 3, 3)), rng.normal(size=(5, 3, 2))
-    run = recorded(rng.normal(size=5), poses, points, wheel_speeds=np.full((5, 3, 2), np.nan), phase=np.arange(5))
-    run.save(tmp_path / "trajectory.npz", rng.normal(size=(5, 4)))
-    again = Trajectory.read(tmp_path / "trajectory.npz")
-    for field in fields(Trajectory):
-        assert getattr(again, field.name).tobytes() == getattr(run, field.name).tobytes()
+def test_what_no_run_wrote_is_never_replaced(tmp_path: Path) -> None:
+    folder = run_of(tmp_path / "run", "old")
+    (folder / "notes.txt").write_text("mine", encoding="utf-8")
+    with pytest.raises(InputError, match=r"holds notes\.txt, which no run wrote; move it, or name another folder"):
+        run_of(folder, "new")
+    assert (folder / "notes.txt").read_text(encoding="utf-8") == "mine"
+    assert (folder / run_folder.RESULT).read_text(encoding="utf-8") == "old"
+    assert os.listdir(tmp_path) == ["run"]
 
 
-@pytest.mark.parametrize("content", [b"", b"PK", b"\x93NUMPY nonsense"])
-def test_a_damaged_trajectory_is_bad_input(tmp_path: Path, content: bytes) -> None:
-    path = tmp_path / "trajectory.npz"
-    path.write_bytes(content)
-    with pytest.raises(InputError, match="cannot be read"):
-        Trajectory.read(path)
-    with pytest.raises(InputError, match="cannot be read"):
-        Trajectory.read(tmp_path / "none.npz")
+def test_what_looks_like_a_run_but_was_not_written_by_one_is_left_alone(tmp_path: Path) -> None:
+    folder = tmp_path / "holiday"
+    (folder / "photos").mkdir(parents=True)
+    fill(folder, "")
+    with pytest.raises(InputError, match="exists and is not a run folder"):
+        run_of(folder)
+    assert sorted(os.listdir(folder)) == ["photos", run_folder.RESULT, run_folder.TRAJECTORY]
+
+
+def test_a_file_of_a_run_that_was_edited_is_the_users(tmp_path: Path) -> None:
+    folder = run_of(tmp_path / "run")
+    (folder / run_folder.RESULT).write_text("edited", encoding="utf-8")
+    with pytest.raises(InputError, match=r"holds result\.json, which was changed since it was written"):
+        run_of(folder)
+    assert (folder / run_folder.RESULT).read_text(encoding="utf-8") == "edited"
+
+
+def test_a_link_in_a_run_folder_is_the_users(tmp_path: Path) -> None:
+    folder = run_of(tmp_path / "run")
+    (tmp_path / "elsewhere").mkdir()
+    (folder / "more").symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(InputError, match="holds more, which no run wrote"):
+        run_of(folder)
+
+
+def test_a_figure_that_was_drawn_into_a_run_goes_with_it(tmp_path: Path) -> None:
+    folder = run_of(tmp_path / "run")
+    write_whole(folder / "figure-graph.png", b"drawn")
+    write_whole(folder / "figure-graph.png", b"drawn again")
+    assert manifest.foreign(folder) is None
+    run_of(folder, "new")
+    assert sorted(os.listdir(folder)) == sorted([manifest.NAME, run_folder.RESULT, run_folder.TRAJECTORY])
+
+
+def appears(place: Path) -> None:
+    place.mkdir()
+    (place / "thesis.tex").write_text("mine", encoding="utf-8")
+
+
+def is_noted(place: Path) -> None:
+    (place / "notes.txt").write_text("mine", encoding="utf-8")
+
+
+@pytest.mark.parametrize("older", [False, True])
+def test_a_run_whose_place_is_taken_while_it_is_under_way_is_kept_beside_it(tmp_path: Path, older: bool) -> None:
+    place = tmp_path / "run"
+    if older:
+        run_of(place, "old")
+    (tmp_path / "run-2").mkdir()
+    (tmp_path / "run-2" / "other").touch()
+
+    def run() -> None:
+        with writing(place) as new:
+            fill(new, "new")
+            (is_noted if older else appears)(place)
+
+    with pytest.raises(InputError, match=r"and was left alone; the run is kept in .*/run-3$"):
+        run()
+    assert (place / ("notes.txt" if older else "thesis.tex")).read_text(encoding="utf-8") == "mine"
+    assert not older or (place / run_folder.RESULT).read_text(encoding="utf-8") == "old"
+    assert (tmp_path / "run-3" / run_folder.RESULT).read_text(encoding="utf-8") == "new"
+    assert sorted(os.listdir(tmp_path)) == ["run", "run-2", "run-3"]
+    run_of(tmp_path / "run-3", "newer")  # a run folder like any other
+
+
+def test_two_runs_into_one_place_at_once_are_one_run_and_one_line(tmp_path: Path) -> None:
+    with writing(tmp_path / "run") as new:
+        fill(new, "first")
+        with pytest.raises(InputError, match="another process is writing it"):
+            run_of(tmp_path / "run", "second")
+    assert (tmp_path / "run" / run_folder.RESULT).read_text(encoding="utf-8") == "first"
+    assert os.listdir(tmp_path) == ["run"]
+
+
+def test_a_run_that_is_not_finished_is_no_run(tmp_path: Path) -> None:
+    with writing(tmp_path / "run") as new:
+        fill(new)
+        assert not is_run(new)
+        with pytest.raises(InputError, match="not a finished run"):
+            run_folder.read(new)
