@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from types import MappingProxyType
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from scenarios.definition.experiment import Experiment
@@ -37,6 +38,7 @@ def names_for(experiment: Experiment) -> list[str]:
     return [name for name in FIGURES if name not in without]
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a diverged run has a figure too
 def plot(
     experiment: Experiment,
     trajectory: Trajectory,

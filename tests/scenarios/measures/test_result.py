@@ -2,10 +2,12 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from robots import NearIdentityDiffeomorphism
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.metrics import measure
 from scenarios.measures.result import result
@@ -65,7 +67,8 @@ def test_a_result_is_json_and_agents_are_numbered_from_1(varied: Callable[..., E
 
 @pytest.mark.parametrize("plant", ["unicycle", "pymunk"])
 def test_a_diverged_run_is_an_outcome_that_json_can_hold(varied: Callable[..., Experiment], plant: str) -> None:
-    experiment = varied(f"plant.name={plant}", "robot.projection_distance_m=1e-308", duration=1.0)
+    nearly_singular = NearIdentityDiffeomorphism(1e-308)
+    experiment = replace(varied(f"plant.name={plant}", duration=1.0), nid=nearly_singular)
     found = json.loads(json.dumps(summary(experiment), allow_nan=False))
     assert found["outcome"] == "diverged"
     assert found["testbed"]["accepted"] is False

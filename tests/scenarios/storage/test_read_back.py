@@ -85,7 +85,8 @@ def test_a_run_of_a_scenarios_own_duration_is_read_back_without_one(tmp_path: Pa
 
 
 def test_a_diverged_run_is_read_back(tmp_path: Path) -> None:
-    folder = make("shape", tmp_path / "run", "robot.projection_distance_m=1e-308", "plant.name=pymunk")
+    slow = ('plant.name="single_integrator"', "plant.control_period_s=100")  # far beyond what the integrator stands
+    folder = make("shape", tmp_path / "run", *slow, duration=10_000.0)
     assert read(folder).result["outcome"] == "diverged"
 
 
