@@ -29,10 +29,11 @@ test: lint ## lint, type check and the whole test suite
 quick: $(STAMP) ## the test suite without the Monte Carlo runs
 	$(BIN)/pytest -n auto -m 'not slow'
 
-lint: $(STAMP) ## ruff and mypy
+lint: $(STAMP) ## ruff, mypy and the order of the floors
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/lint-imports --no-cache
 
 check: $(STAMP) ## run every scenario again and compare it with its baseline
 	$(BIN)/formation check

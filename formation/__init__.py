@@ -1,4 +1,10 @@
-"""The theory: graphs, angles, targets, laws, predictions. numpy only; knows no robot, no clock, no file."""
+"""The theory: graphs, angles, targets, laws, predictions. numpy only; knows no robot, no clock, no file.
+
+A row of an array is an agent. Rooms of their own have :mod:`formation.graph`, :mod:`formation.laws`,
+:mod:`formation.analysis` and :mod:`formation.audit`.
+"""
+
+from typing import TYPE_CHECKING, Any
 
 from formation.activation import SequentialActivation as SequentialActivation
 from formation.activation import collision_margins as collision_margins
@@ -29,3 +35,47 @@ from formation.maneuver import pair_ends as pair_ends
 from formation.plane import rotation as rotation
 from formation.random_target import random_target as random_target
 from formation.target import TargetFormation as TargetFormation
+
+__all__ = [
+    "AngleLaw",
+    "AngleSet",
+    "ComparisonLaw",
+    "EDGE_LAWS",
+    "FormationLaw",
+    "Phase",
+    "SensingGraph",
+    "SequentialActivation",
+    "Similarity",
+    "TargetFormation",
+    "VelocityEstimator",
+    "__version__",
+    "asymptotic_rates",
+    "closed_loop_matrix",
+    "collision_margins",
+    "constraint_coefficients",
+    "decay_rates",
+    "end_configuration",
+    "end_similarity",
+    "fit_similarity",
+    "follower_gains",
+    "interior_angles",
+    "pair_ends",
+    "propagate",
+    "random_target",
+    "rotation",
+    "settling_bound",
+    "signed_angle",
+    "target_from_angles",
+    "wrap",
+]
+
+
+if not TYPE_CHECKING:  # type checkers would take any name for one that is there
+
+    def __getattr__(name: str) -> Any:
+        """``__version__``, looked up when it is asked for: that takes longer than to load the package."""
+        if name == "__version__":
+            from importlib.metadata import version
+
+            return version("angle-formation")
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

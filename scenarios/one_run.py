@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.markup import escape
@@ -51,21 +52,15 @@ def run_to_folder(
     """
     folder = out or run_folder.default_path(experiment.file.name, experiment.plant, seed)
     with run_folder.writing(folder) as scratch, Encoder() if recorded else nullcontext() as encoder:
-        view = None if live is None else _open_view(experiment, seed, live, console)
+        view = _open_view(experiment, seed, live, console)
         with progress_bar(console, experiment.file.name) as advance:
             trajectory = simulate(experiment, seed, advance, view)
         metrics = measure(experiment, trajectory)
         summary = result(experiment, seed, trajectory, metrics)
-        trajectory.save(scratch / run_folder.TRAJECTORY, metrics.angle_errors)
-        run_folder.write_scenario(scratch, experiment.file)
-        run_folder.write_json(scratch / run_folder.RESULT, summary)
-        if encoder is not None:
-            encoder.begin(scratch)
-        _draw_overview(experiment, trajectory, metrics, scratch)
-        if encoder is not None:
-            _record(scratch / run_folder.RECORDING, encoder, console)
-    if view is not None and live is not None and not (view.finish(summary) and viewer.listening(live.port)):
-        console.print("live: the viewer went away; the run folder has everything")
+        run_folder.write(scratch, experiment, trajectory, metrics.angle_errors, summary)
+        with _recording(encoder, scratch, console):
+            _draw_overview(experiment, trajectory, metrics, scratch)
+    _close_view(view, live, summary, console)
     print_result(console, summary)
     console.print(f"run folder: {escape(str(folder))}")
     return metrics.outcome == "converged"
@@ -77,19 +72,32 @@ def _draw_overview(experiment: Experiment, trajectory: Trajectory, metrics: Metr
     plot(experiment, trajectory, metrics, folder, [OVERVIEW], ["png"])  # `formation plot` draws the rest, and for print
 
 
-def _record(path: Path, encoder: Encoder, console: Console) -> None:
-    """Write the recording. A run is whole without it: replay rebuilds it."""
+@contextmanager
+def _recording(encoder: Encoder | None, folder: Path, console: Console) -> Iterator[None]:
+    """Encodes the run in ``folder`` beside what the block does. A run is whole without: replay rebuilds a recording."""
+    if encoder is None:
+        yield
+        return
+    encoder.begin(folder)
+    yield
     try:
-        file.write(path, encoder.recording())
+        file.write(folder / run_folder.RECORDING, encoder.recording())
     except OSError as error:
         console.print(f"recording: cannot be written: {error.strerror}; replay will rebuild it")
 
 
-def _open_view(experiment: Experiment, seed: int, live: Live, console: Console) -> LiveView | None:
-    """The viewer that watches the run; None where there is none, and then the run goes on without."""
+def _open_view(experiment: Experiment, seed: int, live: Live | None, console: Console) -> LiveView | None:
+    """The viewer that watches the run; None where none is wanted or there is none: the run goes on without."""
+    if live is None:
+        return None
     if not viewer.ready(live.port):
         console.print("live: no viewer, and none can be started here; the run goes on without")
         return None
     from scenarios.recording.live import LiveView, viewer_at
 
     return LiveView(experiment, seed, viewer_at(live.port), live.speed)
+
+
+def _close_view(view: LiveView | None, live: Live | None, summary: dict[str, Any], console: Console) -> None:
+    if view is not None and live is not None and not (view.finish(summary) and viewer.listening(live.port)):
+        console.print("live: the viewer went away; the run folder has everything")

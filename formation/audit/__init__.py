@@ -2,6 +2,7 @@
 
 A law is a black box here, and only what the runner takes for granted is demanded of it. Everything is measured on
 single integrators, at random places of about the target's size and at the target itself.
+No law is named here.
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ from formation.audit.measurements import batches, frames, locality, mirrored_fra
 from formation.audit.subject import Finding as Finding
 from formation.audit.subject import Subject as Subject
 from formation.audit.target import derivative, fixes, mirror_image, rest, sampling, stability, zero_modes
+
+__all__ = ["Finding", "Subject", "audit"]
 
 
 def audit(subject: Subject, control_period: float, seed: int = 0) -> list[Finding]:

@@ -1,1 +1,3 @@
-"""One law a file: source, equation, what it measures, what is proved, what is known to fail."""
+"""One law a file: source, equation, what it measures, what is proved, what is known to fail. Moves no agent."""
+
+__all__ = ["angle", "comparison", "first_follower", "protocol"]

@@ -10,6 +10,8 @@ from robots.safety.barrier import sampling_loss as sampling_loss
 from robots.safety.protocol import Noise as Noise
 from robots.safety.protocol import SafetyFilter as SafetyFilter
 
+__all__ = ["FILTERS", "FilterSettings", "Noise", "SafetyFilter", "make_filter", "sampling_loss"]
+
 FILTERS = ("none", "decentralised", "centralised", "robotarium")
 """The filters by the name that scenario files and the command line use."""
 

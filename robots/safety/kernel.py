@@ -9,6 +9,8 @@ A row (a_x, a_y, b) of the arrays below is the half-plane a.u >= b with |a| = 1.
 hard: the sides of the wheels' diamond.
 """
 
+# Longer than 300 lines: what numba compiles together has to stand in one file, see above.
+
 from __future__ import annotations
 
 from typing import NamedTuple

@@ -1,6 +1,7 @@
 """Four worlds behind one protocol, from the theorem's points to bodies with mass.
 
 A run on each rung from one seed tells how much of an error the theory, the map, the wheels and the contacts bring.
+A world does not know what is commanded, nor why.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from robots.worlds.protocol import NOTHING as NOTHING
 from robots.worlds.protocol import Controller as Controller
 from robots.worlds.protocol import Real
 from robots.worlds.protocol import World as World
+
+__all__ = ["Controller", "NOTHING", "PLANTS", "Saturated", "SingleIntegrator", "Unicycle", "World", "make_world"]
 
 PLANTS = ("single_integrator", "unicycle", "saturated", "pymunk")
 """The worlds by the name that scenario files and the command line use, from the simplest to the most real."""

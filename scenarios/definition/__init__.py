@@ -2,3 +2,5 @@
 
 Nothing here moves a robot.
 """
+
+__all__ = ["experiment", "keys", "law_file", "load", "own_law", "schema", "starts", "targets"]

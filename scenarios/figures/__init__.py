@@ -6,3 +6,5 @@ from scenarios.figures.catalogue import names_for as names_for
 from scenarios.figures.catalogue import plot as plot
 from scenarios.figures.encode import animate as animate
 from scenarios.figures.style import FORMATS as FORMATS
+
+__all__ = ["FIGURES", "FORMATS", "OVERVIEW", "animate", "names_for", "plot"]

@@ -1,1 +1,6 @@
-"""Recordings for the rerun viewer. Nothing here is imported before a recording is asked for: rerun takes its time."""
+"""Recordings for the rerun viewer, and the viewer. What they show is measured elsewhere: nothing is computed here.
+
+Nothing that loads rerun is imported before a recording is asked for: rerun takes its time.
+"""
+
+__all__ = ["aside", "encode", "file", "live", "piece", "recorder", "streams", "viewer", "views"]

@@ -1,1 +1,3 @@
-"""What a person reads in a terminal about one experiment or one run. Computes nothing that a result does not hold."""
+"""What a person reads of scenarios, one experiment or one run. Runs nothing; studies print their own."""
+
+__all__ = ["catalogue", "cells", "experiment", "result"]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import errno
-import json
 import math
 import os
 from collections.abc import Iterator
@@ -15,8 +14,12 @@ from typing import TYPE_CHECKING, Any
 from scenarios.errors import InputError
 from scenarios.reading import read_json
 from scenarios.storage import manifest, scratch
+from scenarios.storage.files import write_json
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from scenarios.definition.experiment import Experiment
     from scenarios.definition.load import ScenarioFile
     from scenarios.definition.schema import Scenario
@@ -215,15 +218,26 @@ def _asked_duration(scenario: Scenario, result: Result) -> float | None:
     return None if own == result.planned_duration_s else result.planned_duration_s
 
 
-def write_scenario(folder: Path, file: ScenarioFile) -> None:
-    """Write what a run was made from, so that the folder needs nothing outside it."""
-    content = file.scenario.model_dump(mode="json")
-    if file.law is not None:
+def write(
+    folder: Path,
+    experiment: Experiment,
+    trajectory: Trajectory,
+    angle_errors: NDArray[np.float64],
+    result: dict[str, Any],
+) -> None:
+    """Write what :func:`read` needs, so that the folder needs nothing outside it.
+
+    Args:
+        folder: that :func:`writing` gave.
+        experiment: what was run.
+        trajectory: its states.
+        angle_errors: (T, m) radians, kept beside the states.
+        result: the content of ``result.json``.
+    """
+    trajectory.save(folder / TRAJECTORY, angle_errors)
+    content = experiment.file.scenario.model_dump(mode="json")
+    if experiment.file.law is not None:
         content["law"]["file"] = LAW
-        (folder / LAW).write_bytes(file.law.source)
+        (folder / LAW).write_bytes(experiment.file.law.source)
     write_json(folder / SCENARIO, content)
-
-
-def write_json(path: Path, content: Any) -> None:
-    """Write JSON as people read it; numbers keep all their digits."""
-    path.write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    write_json(folder / RESULT, result)

@@ -1,1 +1,6 @@
-"""Many runs: sweeps, the comparison with baselines, laws side by side, audits, the paper's numbers."""
+"""Many runs: sweeps, the comparison with baselines, laws side by side, audits, the paper's numbers.
+
+A study opens, runs, measures and prints; how one run is made or measured is not decided here.
+"""
+
+__all__ = ["audit", "check", "laws", "project", "reproduction", "sweep", "sweep_table", "variations"]

@@ -1,5 +1,7 @@
 """Monte Carlo: one scenario or its variations, many seeds, one row per run, and what the rows say together."""
 
+# Longer than 300 lines: a row, its study and their summary are one idea.
+
 from __future__ import annotations
 
 import csv
@@ -17,7 +19,7 @@ from scenarios.errors import InputError
 from scenarios.measures.metrics import measure
 from scenarios.simulation.loop import count_periods, simulate
 from scenarios.simulation.trajectory import Trajectory
-from scenarios.storage.run_folder import write_json
+from scenarios.storage.files import write_json
 from scenarios.studies.variations import Variation, combinations
 from scenarios.work.protocol import Spread
 

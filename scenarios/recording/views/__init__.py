@@ -1,1 +1,6 @@
-"""What a recording shows: the scene, the plots, the timeline, the summary, and how they are laid out."""
+"""What a recording shows: the scene, the plots, the timeline, the summary, and how they are laid out.
+
+Where streams go, and when, is not known here: a :class:`~scenarios.recording.recorder.Recorder` takes all.
+"""
+
+__all__ = ["blueprint", "plots", "scene", "style", "summary", "timeline"]
