@@ -3,4 +3,4 @@
 Nothing here moves a robot.
 """
 
-__all__ = ["experiment", "keys", "law_file", "load", "own_law", "schema", "starts", "targets"]
+__all__ = ["bounds", "experiment", "keys", "law_file", "load", "own_law", "reading", "schema", "starts", "targets"]

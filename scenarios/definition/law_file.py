@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
+from scenarios.definition.reading import read_regular
 from scenarios.errors import InputError
-from scenarios.reading import read_regular
 
 LONGEST_MESSAGE = 200
 """Characters of a user's exception that a message repeats."""

@@ -15,9 +15,9 @@ from pydantic import BaseModel, ValidationError
 from scenarios.definition import law_file
 from scenarios.definition.bounds import LARGEST_INTEGER
 from scenarios.definition.law_file import LawFile
+from scenarios.definition.reading import read_regular
 from scenarios.definition.schema import LawTable, Scenario
 from scenarios.errors import InputError, did_you_mean
-from scenarios.reading import read_regular
 
 LIBRARY = Path(__file__).parents[1] / "library"
 

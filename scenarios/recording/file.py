@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-from scenarios.reading import open_regular, read_regular
+from scenarios.definition.reading import open_regular, read_regular
 from scenarios.storage.files import put
 
 

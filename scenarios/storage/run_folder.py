@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scenarios.errors import InputError
-from scenarios.reading import read_json
+from scenarios.definition.reading import read_json
 from scenarios.storage import manifest, scratch
 from scenarios.storage.files import write_json
 

@@ -16,7 +16,7 @@ from robots.safety.protocol import BLOCKERS, WALLS
 from robots.worlds import NOTHING
 from scenarios.definition.experiment import Experiment
 from scenarios.errors import InputError
-from scenarios.reading import open_regular
+from scenarios.definition.reading import open_regular
 from scenarios.simulation.loop import periods
 from scenarios.simulation.trajectory import Trajectory
 

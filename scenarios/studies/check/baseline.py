@@ -12,8 +12,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from scenarios.definition.experiment import Experiment
 from scenarios.definition.load import library
+from scenarios.definition.reading import read_regular
 from scenarios.errors import InputError, did_you_mean
-from scenarios.reading import read_regular
 from scenarios.storage.files import write_whole
 
 FOLDER = Path(__file__).parents[2] / "baselines"

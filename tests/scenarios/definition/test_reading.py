@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from scenarios.definition import law_file, load
+from scenarios.definition.reading import read_json, read_regular
 from scenarios.errors import InputError
-from scenarios.reading import read_json, read_regular
 from scenarios.studies.check import baseline
 
 
