@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from scenarios.errors import InputError
 from scenarios.definition.reading import read_json
+from scenarios.errors import InputError
 from scenarios.storage import manifest, scratch
 from scenarios.storage.files import write_json
 

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from robots.safety.protocol import BLOCKERS, WALLS
 from robots.worlds import NOTHING
 from scenarios.definition.experiment import Experiment
-from scenarios.errors import InputError
 from scenarios.definition.reading import open_regular
+from scenarios.errors import InputError
 from scenarios.simulation.loop import periods
 from scenarios.simulation.trajectory import Trajectory
 
