@@ -8,7 +8,7 @@ SCENARIO ?= shape
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install run test quick lint check bench figures evidence screenshots clean
+.PHONY: help install run test quick lint check bench fuzz figures evidence screenshots clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -53,6 +53,9 @@ figures: $(STAMP) ## draw the figures of the documents, the film included
 	$(BIN)/formation run maneuver-testbed --out runs/figures/maneuver-testbed
 	$(BIN)/formation animate runs/figures/maneuver-testbed --speed 12 --fps 12
 	cp runs/figures/maneuver-testbed/animation.gif docs/images/maneuver-testbed.gif
+
+fuzz: $(STAMP) ## stop 20 sweeps at random moments, continue them, and compare (about 15 minutes)
+	$(BIN)/python tests/fuzz/test_stopped_sweeps.py
 
 evidence: $(STAMP) ## the Monte Carlo evidence over all seeds, printed (about 20 minutes)
 	EVIDENCE_SEEDS=500 $(BIN)/pytest tests/evidence -q -n auto --dist load -rP

@@ -13,41 +13,50 @@ from scenarios.errors import InputError
 
 @click.command("sweep")
 @options.scenario
-@click.option("--seeds", required=True, metavar="A:B", help="Seeds A to B - 1, one run each.")
+@click.option("--seeds", required=True, metavar="SEEDS", help="A:B for A to B - 1, N, or a list: 1,5,7:9.")
 @options.plant
+@options.safety("none, decentralised, centralised or robotarium.")
+@options.duration
 @options.changes
 @click.option("--vary", "varied", multiple=True, metavar="KEY=V1,V2,...", help="Run with each of these values.")
 @options.workers
 @click.option("--scheduler", metavar="ADDRESS", help="A running dask scheduler's, tcp://host:port, in their place.")
 @options.out("[default: runs/sweep-SCENARIO-PLANT-seedsA-B]")
+@click.option("--restart", is_flag=True, help="Make all rows anew, where some are there already.")
 def sweep_command(
     scenario: str,
     seeds: str,
     plant: str | None,
+    safety: str | None,
+    duration: float | None,
     changes: tuple[str, ...],
     varied: tuple[str, ...],
     workers: int | None,
     scheduler: str | None,
     out: Path | None,
+    restart: bool,
 ) -> None:
     """Run SCENARIO (a name or a file) with many seeds: one row per run, and a summary.
 
     Where --vary is given several times, every combination of the values is run with every seed. Rows are kept as they
-    come, also those of a sweep that is stopped. Exit code 0 whatever the runs gave.
+    come: the same command goes on where a sweep was stopped. Exit code 0 whatever the runs gave.
     """
     from scenarios.studies.project import PROJECT
-    from scenarios.studies.sweep import open_study, parse_seeds, sweep
-    from scenarios.studies.sweep_table import print_sweep
-    from scenarios.studies.variations import parse_variations
+    from scenarios.studies.sweep.seeds import parse_seeds
+    from scenarios.studies.sweep.study import open_study
+    from scenarios.studies.sweep.sweep import sweep
+    from scenarios.studies.sweep.table import print_sweep
+    from scenarios.studies.sweep.variations import parse_variations
     from scenarios.terminal import new_console, progress_bar
     from scenarios.work.spread import spread
 
-    changes = options.changed(changes, plant)
+    changes = options.changed(changes, plant, safety)
     console = new_console()
-    study = open_study(scenario, changes, parse_variations(varied, changes), parse_seeds(seeds))
+    variations = parse_variations(varied, changes)
+    study = open_study(scenario, changes, variations, parse_seeds(seeds), duration, safety)
     with spread(workers, scheduler, PROJECT) as run_all, progress_bar(console, "sweep") as advance:
-        summaries, folder = sweep(study, out, run_all, advance)
-    print_sweep(console, study, summaries, folder)
+        swept = sweep(study, out, run_all, advance, restart)
+    print_sweep(console, study, swept)
 
 
 @click.command()

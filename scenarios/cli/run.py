@@ -41,14 +41,13 @@ def run(
     speed: float | None,
 ) -> None:
     """Run SCENARIO (a name or a file), print its result and write its run folder."""
-    from scenarios.definition.experiment import open_experiment
+    from scenarios.definition.experiment import open_experiment, require_safety
     from scenarios.one_run import run_to_folder
     from scenarios.terminal import new_console
 
     changes = options.changed(changes, plant, safety)
     experiment = open_experiment(scenario, changes, duration)
-    if safety is not None and safety != experiment.safety:
-        raise InputError(f"--safety {safety}: the plant {experiment.plant} has no robots to keep apart, expected none")
+    require_safety(experiment, safety)
     if not run_to_folder(experiment, seed, out, new_console(), recorded, _live(live, speed)):
         raise SystemExit(MISSED)
 

@@ -125,6 +125,16 @@ def open_experiment(scenario: str, changes: tuple[str, ...] = (), duration: floa
     return build(load(scenario, changes), duration)
 
 
+def require_safety(experiment: Experiment, safety: str | None) -> None:
+    """Refuse a filter that was asked for on a plant that has nothing to filter; None asks for nothing.
+
+    Raises:
+        InputError: the experiment runs without it.
+    """
+    if safety is not None and safety != experiment.safety:
+        raise InputError(f"--safety {safety}: the plant {experiment.plant} has no robots to keep apart, expected none")
+
+
 def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True) -> Experiment:
     """The experiment of a scenario file.
 

@@ -56,7 +56,7 @@ def plot(
         InputError: the folder cannot be written.
     """
     written = []
-    with print_style():
+    with print_style(), np.errstate(over="ignore", invalid="ignore"):  # a diverged run is an outcome, not a warning
         for name in names:
             draw: Draw = FIGURES[name]
             figure = draw(experiment, trajectory, metrics)

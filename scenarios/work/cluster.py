@@ -7,8 +7,10 @@ import hashlib
 import importlib.metadata
 import importlib.util
 import logging
+import uuid
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager
 from functools import cache, partial
@@ -17,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 from scenarios.errors import InputError
-from scenarios.work.protocol import Code, Result, Spread, Task
+from scenarios.work.protocol import AHEAD, Code, Result, Spread, Task
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -62,27 +64,37 @@ def connected(address: str, code: Code) -> Iterator[Spread]:
 
 
 def _run_all(
-    client: Client, address: str, code: Code, work: Callable[[Task], Result], tasks: Sequence[Task]
+    client: Client, address: str, code: Code, work: Callable[[Task], Result], tasks: Iterable[Task]
 ) -> Iterator[Result]:
+    run = partial(_run_here, work, code, sources(code.packages))
+    running: deque[tuple[Task, Future[Any]]] = deque()
+    with _located(address):
+        ahead = AHEAD * max(1, sum(client.nthreads().values()))
+    for task in tasks:
+        running.append((task, client.submit(run, task, key=f"formation-{uuid.uuid4().hex}")))
+        if len(running) >= ahead:
+            yield _result(client, address, *running.popleft())
+    while running:
+        yield _result(client, address, *running.popleft())
+
+
+def _result(client: Client, address: str, task: Task, future: Future[Any]) -> Any:
     from distributed import KilledWorker
 
-    run = partial(_run_here, work, code, sources(code.packages))
-    futures = client.map(run, list(tasks), key="formation", pure=False)
-    for task, future in zip(tasks, futures, strict=True):
-        error = _wait(client, address, future)
-        if isinstance(error, KilledWorker):
-            times = error.allowed_failures + 1
-            raise InputError(
-                f"--scheduler {address}: {task}: its worker was killed {times} times, for want of memory?"
-            ) from error
-        if isinstance(error, ModuleNotFoundError):
-            raise InputError(f"--scheduler {address}: {task}: its worker lacks a package: {error}") from error
-        if error is not None:
-            raise error.with_traceback(future.traceback())
-        with _located(address):
-            result = future.result()
-        future.release()
-        yield result
+    error = _wait(client, address, future)
+    if isinstance(error, KilledWorker):
+        times = error.allowed_failures + 1
+        raise InputError(
+            f"--scheduler {address}: {task}: its worker was killed {times} times, for want of memory?"
+        ) from error
+    if isinstance(error, ModuleNotFoundError):
+        raise InputError(f"--scheduler {address}: {task}: its worker lacks a package: {error}") from error
+    if error is not None:
+        raise error.with_traceback(future.traceback())
+    with _located(address):
+        result = future.result()
+    future.release()
+    return result
 
 
 def _run_here(work: Callable[[Task], Result], code: Code, expected: str, task: Task) -> Result:

@@ -6,33 +6,43 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from itertools import chain, islice
 
 from scenarios.errors import InputError
-from scenarios.work.protocol import Result, Task
+from scenarios.work.protocol import AHEAD, Result, Task
 
 
-def run_all(work: Callable[[Task], Result], tasks: Sequence[Task], workers: int) -> Iterator[Result]:
+def run_all(work: Callable[[Task], Result], tasks: Iterable[Task], workers: int) -> Iterator[Result]:
     """Yield ``work(task)`` of every task, in the order of the tasks, each as soon as it and all before it are done.
 
     Args:
         work: a function of a module; with more than one worker it runs in processes that import its module anew.
-        tasks: what it is called with.
+        tasks: what it is called with; taken as workers become free, at most :data:`AHEAD` per worker before their turn.
         workers: number of processes; 1 works in this one.
 
     Raises:
         InputError: a process was killed, for want of memory as a rule.
     """
-    if workers == 1 or len(tasks) == 1:
-        yield from map(work, tasks)
+    coming = iter(tasks)
+    first = list(islice(coming, workers))
+    if len(first) < 2:
+        yield from map(work, chain(first, coming))
         return
     # Not forked: a copy of a process with threads (progress bars have one) may wait for a lock that nobody holds.
     context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(min(workers, len(tasks)), context, _begin_worker)
+    pool = ProcessPoolExecutor(len(first), context, _begin_worker)
+    running: deque[Future[Result]] = deque()
     try:
-        yield from pool.map(work, tasks)
+        for task in chain(first, coming):
+            running.append(pool.submit(work, task))
+            if len(running) == AHEAD * len(first):
+                yield running.popleft().result()
+        while running:
+            yield running.popleft().result()
     except BrokenProcessPool as error:
         raise InputError(
             "--workers: a worker process was killed, for want of memory? expected fewer workers"

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple, Protocol, TypeVar
+
+AHEAD = 32
+"""Tasks per worker that are taken before their turn: memory does not grow with the number of tasks."""
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -12,7 +15,7 @@ Result = TypeVar("Result")
 class Spread(Protocol):
     """Yields ``work(task)`` of every task, in the order of the tasks, each as soon as it and all before it are done."""
 
-    def __call__(self, work: Callable[[Task], Result], tasks: Sequence[Task]) -> Iterator[Result]: ...
+    def __call__(self, work: Callable[[Task], Result], tasks: Iterable[Task]) -> Iterator[Result]: ...
 
 
 class Code(NamedTuple):

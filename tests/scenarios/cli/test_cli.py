@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import re
 import resource
 import shlex
 import signal
@@ -88,13 +89,13 @@ def test_a_sweep_prints_a_line_per_combination_and_a_whole_summary_where_nothing
     answer = cli(*short, "--vary", "plant.name=unicycle,pymunk", "--vary", "safety.filter=none,decentralised")
     assert (answer.code, answer.err) == (DONE, "")
     assert "8 runs, 2 of each combination" in answer.out
-    assert "rows: runs/sweep-shape-plant.name-safety.filter-seeds0-1/rows.csv" in answer.out
+    assert re.search(r"rows: runs/sweep-shape-plant.name-safety.filter-seeds0-1-\w{6}/rows.csv\n", answer.out)
     lines = [line.split()[:2] for line in answer.out.splitlines()]
     for combination in (["unicycle", "none"], ["unicycle", "decentralised"], ["pymunk", "none"]):
         assert combination in lines
     answer = cli(*short)
     assert "settling time (s)" in answer.out
-    assert "rows: runs/sweep-shape-pymunk-seeds0-1/rows.csv" in answer.out
+    assert re.search(r"rows: runs/sweep-shape-pymunk-seeds0-1-\w{6}/rows.csv\n", answer.out)
 
 
 def test_a_bare_command_and_help_print_the_commands(cli: Cli) -> None:

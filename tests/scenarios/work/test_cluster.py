@@ -21,8 +21,11 @@ from distributed import LocalCluster
 from scenarios.definition.load import LIBRARY
 from scenarios.errors import InputError
 from scenarios.studies.project import PROJECT
-from scenarios.studies.sweep import PARTIAL, ROWS, SUMMARY, open_study, sweep
-from scenarios.studies.variations import parse_variations
+from scenarios.studies.sweep.folder import PARTIAL, ROWS, SUMMARY
+from scenarios.studies.sweep.seeds import parse_seeds
+from scenarios.studies.sweep.study import open_study
+from scenarios.studies.sweep.sweep import sweep
+from scenarios.studies.sweep.variations import parse_variations
 from scenarios.work import cluster, processes
 from scenarios.work.spread import spread
 
@@ -96,14 +99,14 @@ def refused(address: str, *words: str) -> None:
 
 
 def test_rows_are_those_of_one_process_bit_for_bit(local: Local, tmp_path: Path) -> None:
-    study = open_study("shape", SHORT, parse_variations(["plant.name=pymunk,saturated"]), range(3))
+    study = open_study("shape", SHORT, parse_variations(["plant.name=pymunk,saturated"]), parse_seeds("0:3"))
     sweep(study, tmp_path / "here", partial(processes.run_all, workers=1), lambda *_: None)
     counts: list[tuple[int, int]] = []
     with spread(None, local(2), PROJECT) as run_all:
         sweep(study, tmp_path / "there", run_all, lambda *count: counts.append(count))
     for name in (ROWS, SUMMARY):
         assert (tmp_path / "there" / name).read_bytes() == (tmp_path / "here" / name).read_bytes()
-    assert counts == [(1, 6), (2, 6), (3, 6), (6, 6)]
+    assert counts == [(0, 6), (1, 6), (2, 6), (3, 6), (6, 6)]
 
 
 def test_workers_need_no_file_and_a_lost_worker_loses_no_row(
@@ -111,7 +114,7 @@ def test_workers_need_no_file_and_a_lost_worker_loses_no_row(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("mine.toml").write_text((LIBRARY / "shape.toml").read_text(encoding="utf-8"), encoding="utf-8")
-    study = open_study("mine.toml", (*SHORT, "safety.filter=none"), (), range(6))
+    study = open_study("mine.toml", (*SHORT, "safety.filter=none"), (), parse_seeds("0:6"))
     Path("mine.toml").unlink()
     sweep(study, tmp_path / "here", partial(processes.run_all, workers=1), lambda *_: None)
     with cluster.connected(commands, PROJECT) as run_all:
@@ -167,16 +170,17 @@ def test_an_interrupt_drops_what_is_queued_and_keeps_the_finished_rows(
     eventually: Callable[[Callable[[], list[str]], list[str]], list[str]],
 ) -> None:
     begun = []
-    simulate = sys.modules["scenarios.studies.sweep"].simulate
+    simulate = sys.modules["scenarios.studies.sweep.row"].simulate
     monkeypatch.setattr(
-        "scenarios.studies.sweep.simulate", lambda experiment, seed: begun.append(seed) or simulate(experiment, seed)
+        "scenarios.studies.sweep.row.simulate",
+        lambda experiment, seed: begun.append(seed) or simulate(experiment, seed),
     )
 
     def interrupt(done: int, total: int) -> None:
         if done == 2:
             raise KeyboardInterrupt
 
-    study = open_study("shape", SHORT, (), range(300))
+    study = open_study("shape", SHORT, (), parse_seeds("0:300"))
     with in_threads(1) as made:
         with pytest.raises(KeyboardInterrupt), cluster.connected(made.scheduler_address, PROJECT) as run_all:
             sweep(study, tmp_path, run_all, interrupt)

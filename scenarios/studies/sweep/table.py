@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Sequence
-from pathlib import Path
 
 from rich.console import Console
 from rich.markup import escape
 
-from scenarios.studies.sweep import QUANTILES, ROWS, Share, Study, Summary
+from scenarios.studies.sweep.folder import ROWS
+from scenarios.studies.sweep.study import Combination, Study
+from scenarios.studies.sweep.summary import QUANTILES, Share, Summary
+from scenarios.studies.sweep.sweep import Swept
 from scenarios.terminal import new_table, print_table
 
 QUANTITIES = {
@@ -30,37 +32,48 @@ MISSED_SHOWN = 10
 """Seeds of runs that did not converge that a line has room for."""
 
 
-def print_sweep(console: Console, study: Study, summaries: Sequence[Summary], folder: Path) -> None:
+def print_sweep(console: Console, study: Study, swept: Swept) -> None:
     """What the rows say together, and where they are."""
+    if swept.kept:
+        told = "all" if swept.kept == study.runs else f"{swept.kept} of {study.runs}"
+        console.print(f"continued: {told} rows were there; --restart makes them anew")
     if study.variations:
-        _print_combinations(console, study, summaries)
+        _print_combinations(console, study, swept.summaries)
     else:
-        _print_summary(console, summaries[0])
-    _print_missed(console, study, summaries)
-    console.print(f"rows: {escape(str(folder / ROWS))}")
+        _print_summary(console, swept.summaries[0])
+    _print_missed(console, study, swept.summaries)
+    console.print(f"rows: {escape(str(swept.folder / ROWS))}")
 
 
 def _print_missed(console: Console, study: Study, summaries: Sequence[Summary]) -> None:
-    """Which runs did not converge, and the command that shows the first of them."""
-    example = None
+    """Which runs did not converge or could not be made, and the command that shows the first of each."""
+    examples: dict[str, str] = {}
     for combination, summary in zip(study.combinations, summaries, strict=True):
-        if not summary.missed:
-            continue
         where = f" with {', '.join(combination.changes)}" if combination.changes else ""
-        seeds = ", ".join(map(str, summary.missed[:MISSED_SHOWN]))
-        more = len(summary.missed) - MISSED_SHOWN
-        console.print(f"not converged{escape(where)}: seeds {seeds}{f' and {more} more' if more > 0 else ''}")
-        if example is None:
-            changes = [text for change in (*study.changes, *combination.changes) for text in ("--set", change)]
-            seed = str(summary.missed[0])
-            example = shlex.join(["formation", "run", combination.file.path, "--seed", seed, *changes])
-    if example is not None:
+        for what, seeds in (("failed", summary.failed), ("not converged", summary.missed)):
+            if not seeds:
+                continue
+            more = f" and {len(seeds) - MISSED_SHOWN} more" if len(seeds) > MISSED_SHOWN else ""
+            said = f": {summary.failure}" if what == "failed" else ""
+            named = f"{'seed' if len(seeds) == 1 else 'seeds'} {', '.join(map(str, seeds[:MISSED_SHOWN]))}{more}"
+            console.print(escape(f"{what}{where}: {named}{said}"))
+            examples.setdefault(what, _command(study, combination, seeds[0]))
+    for example in examples.values():
         console.print(f"to see the first: {escape(example)}")
+
+
+def _command(study: Study, combination: Combination, seed: int) -> str:
+    """What makes one of the runs again."""
+    changes = [text for change in (*study.changes, *combination.changes) for text in ("--set", change)]
+    length = [] if study.duration is None else ["--duration", f"{study.duration:.15g}"]
+    return shlex.join(["formation", "run", combination.file.path, "--seed", str(seed), *length, *changes])
 
 
 def _print_combinations(console: Console, study: Study, summaries: Sequence[Summary]) -> None:
     """A line per combination."""
-    console.print(f"[bold]{study.runs} runs[/bold], {len(study.seeds)} of each combination; shares with 95 % intervals")
+    console.print(
+        f"[bold]{study.runs} runs[/bold], {study.seeds.count} of each combination; shares with 95 % intervals"
+    )
     console.print()
     measured = [title for title, _, _ in IN_A_LINE.values()]
     keys = [escape(variation.key) for variation in study.variations]

@@ -11,31 +11,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import scenarios.studies.sweep
+import scenarios.studies.sweep.row
+import scenarios.studies.sweep.study
+import scenarios.studies.sweep.sweep
 from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.definition.load import LIBRARY
 from scenarios.errors import InputError
 from scenarios.measures.metrics import measure
 from scenarios.simulation.loop import simulate
 from scenarios.simulation.trajectory import Trajectory
-from scenarios.studies.sweep import (
-    MOST_BATCHED,
-    PARTIAL,
-    QUANTILES,
-    ROWS,
-    SUMMARY,
-    Batch,
-    Row,
-    Share,
-    Summary,
-    batch_size,
-    open_study,
-    parse_seeds,
-    run_batch,
-    summarise,
-    sweep,
-)
-from scenarios.studies.variations import parse_variations
+from scenarios.studies.sweep.folder import PARTIAL, ROWS, SUMMARY
+from scenarios.studies.sweep.row import Row, run_batch
+from scenarios.studies.sweep.seeds import parse_seeds
+from scenarios.studies.sweep.study import MOST_BATCHED, Batch, batch_size, open_study
+from scenarios.studies.sweep.summary import QUANTILES, Share, Summary, summarise
+from scenarios.studies.sweep.sweep import sweep
+from scenarios.studies.sweep.variations import parse_variations
 from scenarios.work.processes import run_all
 
 SHORT = ("duration_s=2",)
@@ -47,14 +38,14 @@ def nothing(done: int, total: int) -> None:
 
 def sweep_shape(
     changes: tuple[str, ...],
-    seeds: range,
+    seeds: str,
     out: Path,
     workers: int = 1,
     vary: tuple[str, ...] = (),
     on_progress: Callable[[int, int], None] = nothing,
 ) -> list[Summary]:
-    study = open_study("shape", changes, parse_variations(vary, changes), seeds)
-    return sweep(study, out, partial(run_all, workers=workers), on_progress)[0]
+    study = open_study("shape", changes, parse_variations(vary, changes), parse_seeds(seeds))
+    return sweep(study, out, partial(run_all, workers=workers), on_progress).summaries
 
 
 def rows_in(path: Path) -> list[dict[str, str]]:
@@ -65,7 +56,7 @@ def rows_in(path: Path) -> list[dict[str, str]]:
 @pytest.mark.parametrize("plant", ["single_integrator", "unicycle", "saturated", "pymunk"])
 def test_a_row_is_what_a_run_of_its_seed_gives(plant: str, tmp_path: Path) -> None:
     changes = (*SHORT, f"plant.name={plant}", "goal.angle_error_sum_rad=2.0")
-    sweep_shape(changes, range(3, 6), tmp_path)
+    sweep_shape(changes, "3:6", tmp_path)
     found = rows_in(tmp_path / ROWS)
     assert [int(row["seed"]) for row in found] == [3, 4, 5]
     experiment = open_experiment("shape", changes)
@@ -81,15 +72,15 @@ def test_a_row_is_what_a_run_of_its_seed_gives(plant: str, tmp_path: Path) -> No
 
 @pytest.mark.parametrize("plant", ["saturated", "pymunk"])
 def test_rows_do_not_depend_on_the_number_of_processes(plant: str, tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setattr(scenarios.studies.sweep, "MOST_BATCHED", 2)
+    monkeypatch.setattr(scenarios.studies.sweep.study, "MOST_BATCHED", 2)
     changes = ("duration_s=0.5", f"plant.name={plant}")
     for workers in (1, 2):
-        sweep_shape(changes, range(5), tmp_path / str(workers), workers)
+        sweep_shape(changes, "0:5", tmp_path / str(workers), workers)
     assert (tmp_path / "1" / ROWS).read_bytes() == (tmp_path / "2" / ROWS).read_bytes()
 
 
 def test_a_run_that_diverges_does_not_cut_the_others_of_its_batch_short(monkeypatch: pytest.MonkeyPatch) -> None:
-    [batch] = open_study("shape", (*SHORT, "plant.name=saturated"), (), range(3)).batches()
+    [batch] = open_study("shape", (*SHORT, "plant.name=saturated"), (), parse_seeds("0:3")).batches()
     together = run_batch(batch)
 
     def cut_short(experiment: Experiment, seed: int | Sequence[int]) -> Trajectory:
@@ -99,7 +90,7 @@ def test_a_run_that_diverges_does_not_cut_the_others_of_its_batch_short(monkeypa
             return trajectory.until(6)
         return trajectory
 
-    monkeypatch.setattr(scenarios.studies.sweep, "simulate", cut_short)
+    monkeypatch.setattr(scenarios.studies.sweep.row, "simulate", cut_short)
     for a, b in zip(run_batch(batch), together, strict=True):
         assert (a.seed, a.outcome, a.settling_time_s) == (b.seed, b.outcome, b.settling_time_s)
         assert a.angle_error_sum_rad == pytest.approx(b.angle_error_sum_rad, abs=1e-12)
@@ -116,20 +107,20 @@ def test_a_sweep_that_is_stopped_keeps_every_finished_row_and_does_not_look_whol
             raise KeyboardInterrupt
         return run_batch(batch)
 
-    monkeypatch.setattr(scenarios.studies.sweep, "run_batch", stopped_at_three)
+    monkeypatch.setattr(scenarios.studies.sweep.sweep, "run_batch", stopped_at_three)
     with pytest.raises(KeyboardInterrupt):
-        sweep_shape(("duration_s=0.2",), range(5), tmp_path)
+        sweep_shape(("duration_s=0.2",), "0:5", tmp_path)
     assert [int(row["seed"]) for row in rows_in(tmp_path / PARTIAL)] == [0, 1, 2]
     assert not (tmp_path / ROWS).exists()
     assert not (tmp_path / SUMMARY).exists()
 
 
 def test_progress_counts_runs_and_the_summary_is_of_the_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(scenarios.studies.sweep, "MOST_BATCHED", 2)
+    monkeypatch.setattr(scenarios.studies.sweep.study, "MOST_BATCHED", 2)
     seen: list[tuple[int, int]] = []
     changes = (*SHORT, "plant.name=unicycle")
-    [summary] = sweep_shape(changes, range(5), tmp_path, on_progress=lambda *counts: seen.append(counts))
-    assert seen == [(2, 5), (4, 5), (5, 5)]
+    [summary] = sweep_shape(changes, "0:5", tmp_path, on_progress=lambda *counts: seen.append(counts))
+    assert seen == [(0, 5), (2, 5), (4, 5), (5, 5)]
     sums = [float(row["angle_error_sum_rad"]) for row in rows_in(tmp_path / ROWS)]
     assert summary.quantiles["angle_error_sum_rad"] == pytest.approx(np.quantile(sums, QUANTILES))
     assert summary.quantiles["settling_time_s"] is None
@@ -142,16 +133,10 @@ def test_batches_fit_in_memory_and_contact_has_none(shape: Experiment) -> None:
     assert batch_size(open_experiment("random-50", ("plant.name=saturated",))) < 5
 
 
-@pytest.mark.parametrize("text", ["3", "3:3", "4:3", "-1:3", "a:b", "1:2:3", ""])
-def test_seeds_that_are_no_range_are_refused(text: str) -> None:
-    with pytest.raises(InputError, match="--seeds"):
-        parse_seeds(text)
-
-
 def test_a_folder_that_cannot_be_written_is_named_before_anything_runs(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("", encoding="utf-8")
     with pytest.raises(InputError, match=r"--out .*cannot be written"):
-        sweep_shape(SHORT, range(2), tmp_path / "file")
+        sweep_shape(SHORT, "0:2", tmp_path / "file")
 
 
 @given(st.integers(1, 10_000).flatmap(lambda total: st.tuples(st.integers(0, total), st.just(total))))
@@ -172,33 +157,42 @@ def test_the_interval_covers_the_true_share_as_often_as_it_says() -> None:
 
 def test_shares_count_converged_and_accepted_runs() -> None:
     rows = [
-        Row("shape", "pymunk", seed, outcome, 0.1, 0.1, None, 0.2, accepted, "")
-        for seed, (outcome, accepted) in enumerate([("converged", True), ("converged", False), ("diverged", False)])
+        dict.fromkeys(("settling_time_s", "angle_error_sum_rad"), "")
+        | {"seed": str(seed), "outcome": outcome, "accepted": accepted, "min_separation_m": "0.2", "message": message}
+        for seed, (outcome, accepted, message) in enumerate(
+            [("converged", "True", ""), ("converged", "False", ""), ("diverged", "False", ""), ("failed", "", "why")]
+        )
     ]
-    summary = summarise(rows)
-    assert summary.converged.share == pytest.approx(2 / 3)
-    assert summary.accepted.share == pytest.approx(1 / 3)
+    summary = summarise(iter(rows), 4)
+    assert summary.converged.share == pytest.approx(2 / 4)
+    assert summary.accepted.share == pytest.approx(1 / 4)
+    assert (summary.missed, summary.failed, summary.failure) == ((2,), (3,), "why")
+    assert summary.quantiles["min_separation_m"] == pytest.approx([0.2] * 5)
+    assert summary.quantiles["settling_time_s"] is None
 
+
+SUMMARY_KEYS = {"runs", "converged", "accepted", "missed", "failed", "failure", "quantiles", "scenario_sha256"}
 
 VARIED = ("plant.name=unicycle,pymunk", "robot.projection_distance_m=0.025,0.050")
 
 
 def test_a_study_is_the_sweeps_of_its_combinations_one_after_another(tmp_path: Path) -> None:
     """Rows, but for the columns of the varied keys, and summaries; values stand as they were written."""
-    sweep_shape(SHORT, range(2), tmp_path / "study", vary=VARIED)
+    sweep_shape(SHORT, "0:2", tmp_path / "study", vary=VARIED)
     study = rows_in(tmp_path / "study" / ROWS)
     together = json.loads((tmp_path / "study" / SUMMARY).read_text(encoding="utf-8"))["combinations"]
     assert list(study[0])[:5] == ["scenario", "plant", "seed", "plant.name", "robot.projection_distance_m"]
     for plant in ("unicycle", "pymunk"):
         for distance in ("0.025", "0.050"):
             changes = (f"plant.name={plant}", f"robot.projection_distance_m={distance}")
-            sweep_shape((*SHORT, *changes), range(2), tmp_path / "alone")
-            alone = json.loads((tmp_path / "alone" / SUMMARY).read_text(encoding="utf-8"))
+            folder = tmp_path / f"{plant}-{distance}"
+            sweep_shape((*SHORT, *changes), "0:2", folder)
+            alone = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
             found = together.pop(0)
             assert found.pop("changes") == list(changes)
             assert found == {key: alone[key] for key in found}
-            assert {"runs", "converged", "accepted", "missed", "quantiles", "scenario_sha256"} == set(found)
-            for row in rows_in(tmp_path / "alone" / ROWS):
+            assert set(found) == SUMMARY_KEYS
+            for row in rows_in(folder / ROWS):
                 varied = study.pop(0)
                 assert (varied.pop("plant.name"), varied.pop("robot.projection_distance_m")) == (plant, distance)
                 assert varied == row
@@ -207,15 +201,15 @@ def test_a_study_is_the_sweeps_of_its_combinations_one_after_another(tmp_path: P
 
 def test_every_combination_is_proved_usable_before_any_runs(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"robot.projection_distance_m: expected .* got -1"):
-        sweep_shape(SHORT, range(2), tmp_path / "out", vary=("robot.projection_distance_m=0.025,-1",))
+        sweep_shape(SHORT, "0:2", tmp_path / "out", vary=("robot.projection_distance_m=0.025,-1",))
     assert not (tmp_path / "out").exists()
 
 
 def test_a_change_of_the_scenario_file_in_mid_sweep_changes_no_row(tmp_path: Path) -> None:
     own = tmp_path / "mine.toml"
     own.write_text((LIBRARY / "shape.toml").read_text(encoding="utf-8"), encoding="utf-8")
-    study = open_study(str(own), SHORT, (), range(3))
+    study = open_study(str(own), SHORT, (), parse_seeds("0:3"))
     sweep(study, tmp_path / "out", partial(run_all, workers=1), lambda *_: own.unlink(missing_ok=True))
-    sweep_shape(SHORT, range(3), tmp_path / "same")
+    sweep_shape(SHORT, "0:3", tmp_path / "same")
     without_name = [list(row.values())[1:] for row in rows_in(tmp_path / "out" / ROWS)]
     assert without_name == [list(row.values())[1:] for row in rows_in(tmp_path / "same" / ROWS)]

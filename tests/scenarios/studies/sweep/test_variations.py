@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scenarios.errors import InputError
-from scenarios.studies.variations import Variation, combinations, parse_variations
+from scenarios.studies.sweep.variations import Variation, combinations, parse_variations
 
 VALUES = st.one_of(
     st.integers().map(str),

@@ -1,0 +1,109 @@
+"""One run of a sweep: made, measured, and told in one row."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from scenarios.definition.experiment import Experiment, build
+from scenarios.errors import InputError
+from scenarios.measures.metrics import measure
+from scenarios.simulation.loop import simulate
+from scenarios.simulation.trajectory import Trajectory
+from scenarios.studies.sweep.study import Batch
+
+RUN_COLUMNS = 3
+"""The first columns of a row, which tell the run; varied keys come behind them."""
+
+FAILED = "failed"
+"""The outcome of a run that could not be made to its end."""
+
+LONGEST_MESSAGE = 300
+"""Characters of what went wrong."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One run; the columns of ``rows.csv``, varied keys after the seed. Empty cells stand for what did not happen."""
+
+    scenario: str
+    plant: str
+    seed: int
+    outcome: str
+    angle_error_sum_rad: float | None = None
+    axle_angle_error_sum_rad: float | None = None
+    settling_time_s: float | None = None
+    min_separation_m: float | None = None
+    accepted: bool | None = None
+    violations: str = ""
+    message: str = ""
+
+    def cells(self, varied: Sequence[str]) -> list[Any]:
+        """The row as it is written."""
+        return _with_varied(list(asdict(self).values()), varied)
+
+
+def columns(varied: Sequence[str]) -> list[str]:
+    """The names above the rows."""
+    return _with_varied([field.name for field in fields(Row)], varied)
+
+
+def _with_varied(cells: list[Any], varied: Sequence[str]) -> list[Any]:
+    return [*cells[:RUN_COLUMNS], *varied, *cells[RUN_COLUMNS:]]
+
+
+def run_batch(batch: Batch) -> list[Row]:
+    """The rows of a batch. A run that cannot be made has its row too, and the others go on."""
+    try:
+        experiment = build(batch.combination.file, batch.combination.duration)
+    except Exception as error:
+        return [_failed(batch, seed, error) for seed in batch.seeds]
+    together = _together(experiment, batch.seeds) if len(batch.seeds) > 1 else None
+    rows = []
+    for index, seed in enumerate(batch.seeds):
+        try:
+            alone = simulate(experiment, seed) if together is None else together.run(index)
+            rows.append(_row(experiment, seed, alone))
+        except Exception as error:
+            rows.append(_failed(batch, seed, error))
+    return rows
+
+
+def _together(experiment: Experiment, seeds: Sequence[int]) -> Trajectory | None:
+    """All runs as one array; None where one of them diverged or failed, which ended it for all."""
+    try:
+        together = simulate(experiment, seeds)
+    except Exception:  # made one by one, the runs tell which of them it was
+        return None
+    return together if np.isfinite(together.poses[-1]).all() else None
+
+
+def _row(experiment: Experiment, seed: int, trajectory: Trajectory) -> Row:
+    metrics = measure(experiment, trajectory)
+    return Row(
+        scenario=experiment.file.name,
+        plant=experiment.plant,
+        seed=seed,
+        outcome=metrics.outcome,
+        angle_error_sum_rad=_finite(metrics.error_sum[-1]),
+        axle_angle_error_sum_rad=_finite(metrics.axle_error_sum[-1]),
+        settling_time_s=metrics.settling_time,
+        min_separation_m=_finite(metrics.separation.distance.min()),
+        accepted=metrics.verdict.accepted,
+        violations=" ".join(violation.kind for violation in metrics.verdict.violations),
+    )
+
+
+def _failed(batch: Batch, seed: int, error: Exception) -> Row:
+    """The row of a run that raised: what, on one line of printable characters."""
+    said = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
+    line = "".join(c if c.isprintable() else "?" for c in " ".join(said.split()))
+    file = batch.combination.file
+    return Row(file.name, file.scenario.plant.name, seed, FAILED, message=line[:LONGEST_MESSAGE])
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

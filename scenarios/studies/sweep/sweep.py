@@ -1,0 +1,83 @@
+"""A sweep from its study to its folder: rows as they come, then what they say together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from scenarios.errors import InputError
+from scenarios.studies.sweep import folder as place
+from scenarios.studies.sweep.row import run_batch
+from scenarios.studies.sweep.study import Study
+from scenarios.studies.sweep.summary import QUANTILES, Summary, summarise
+from scenarios.work.protocol import Spread
+
+
+@dataclass(frozen=True)
+class Swept:
+    """A finished sweep.
+
+    Attributes:
+        summaries: of each combination.
+        folder: that they were written to.
+        kept: runs whose rows an earlier sweep had left there.
+    """
+
+    summaries: list[Summary]
+    folder: Path
+    kept: int
+
+
+def sweep(
+    study: Study, out: Path | None, run_all: Spread, on_progress: Callable[[int, int], None], restart: bool = False
+) -> Swept:
+    """Run every seed and write one row per run, in order, each as soon as it is there.
+
+    Where the folder holds rows of the same study, it goes on behind them; all files then are, bit for bit, those of a
+    sweep that nothing stopped.
+
+    Args:
+        study: what to run.
+        out: folder of the files; None for the default.
+        run_all: what makes the runs. The rows do not depend on it.
+        on_progress: called with the number of runs done and of all runs.
+        restart: whether to begin anew where rows are there.
+
+    Raises:
+        InputError: the folder cannot be written, holds another study, or another sweep writes there.
+    """
+    folder = out or study.default_folder
+    try:
+        with place.claimed(folder):
+            kept = done = place.begin(folder, study, restart)
+            on_progress(done, study.runs)
+            if done < study.runs:
+                for batch, rows in zip(study.batches(done), run_all(run_batch, study.batches(done)), strict=True):
+                    place.append(folder, batch, rows)
+                    done += len(rows)
+                    on_progress(done, study.runs)
+                place.finish(folder)
+            rows_there = place.read_rows(folder)
+            summaries = [summarise(rows_there, study.seeds.count) for _ in study.combinations]
+            rows_there.close()
+            place.write_summary(folder, _summary_file(study, summaries))
+    except OSError as error:
+        raise InputError(f"--out {folder}: cannot be written: {error.strerror or error}") from error
+    return Swept(summaries, folder, kept)
+
+
+def _summary_file(study: Study, summaries: Sequence[Summary]) -> dict[str, Any]:
+    """The content of ``summary.json``."""
+    content = {"changes": list(study.changes), "quantiles_at": QUANTILES}
+    if not study.variations:
+        return {"scenario_sha256": study.combinations[0].file.sha256, **content, **asdict(summaries[0])}
+    return {
+        **content,
+        "varied": {variation.key: variation.values for variation in study.variations},
+        "combinations": [
+            {"changes": combination.changes, "scenario_sha256": combination.file.sha256, **asdict(summary)}
+            for combination, summary in zip(study.combinations, summaries, strict=True)
+        ],
+    }
