@@ -17,7 +17,9 @@ install: $(STAMP) ## make .venv with everything that was tested; does nothing wh
 
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	# A plain path instead of an import hook: the interpreter starts faster, and an interrupt meets it less often.
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt \
+		--config-settings editable_mode=compat --editable '.[dev]'
 	@touch $@
 
 run: $(STAMP) ## run a scenario (SCENARIO=shape)

@@ -3,7 +3,7 @@
 One file a family of commands. Heavy packages are imported by the commands that use them.
 """
 
-from scenarios.cli.exits import BAD_INPUT, DONE, INTERRUPTED, MISSED
+from scenarios.cli.exits import BAD_INPUT, DONE, INTERRUPTED, MISSED, TERMINATED
 from scenarios.cli.main import cli, main
 
-__all__ = ["BAD_INPUT", "DONE", "INTERRUPTED", "MISSED", "cli", "main"]
+__all__ = ["BAD_INPUT", "DONE", "INTERRUPTED", "MISSED", "TERMINATED", "cli", "main"]

@@ -1,3 +1,6 @@
-"""Exit codes: done; a comparison missed or a run did not reach its goal; bad input; interrupted from the keyboard."""
+"""Exit codes: done; a comparison missed or a run did not reach its goal; bad input; interrupted; terminated."""
 
-DONE, MISSED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+from scenarios.signals import INTERRUPTED as INTERRUPTED
+from scenarios.signals import TERMINATED as TERMINATED
+
+DONE, MISSED, BAD_INPUT = 0, 1, 2

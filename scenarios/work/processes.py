@@ -38,7 +38,8 @@ def run_all(work: Callable[[Task], Result], tasks: Iterable[Task], workers: int)
     running: deque[Future[Result]] = deque()
     try:
         for task in chain(first, coming):
-            running.append(pool.submit(work, task))
+            with _without_interrupts():  # it starts a process while there are fewer than workers
+                running.append(pool.submit(work, task))
             if len(running) == AHEAD * len(first):
                 yield running.popleft().result()
         while running:
@@ -47,6 +48,10 @@ def run_all(work: Callable[[Task], Result], tasks: Iterable[Task], workers: int)
         raise InputError(
             "--workers: a worker process was killed, for want of memory? expected fewer workers"
         ) from error
+    except BaseException:  # interrupted, terminated, a task failed: what still runs is of no use
+        for process in multiprocessing.active_children():
+            process.terminate()
+        raise
     finally:
         pool.shutdown(cancel_futures=True)
 
@@ -56,8 +61,17 @@ def available_workers() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Processes that start in the block never see an interrupt: it ends the parent, which ends them."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def _begin_worker() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # an interrupt ends the parent, which ends the workers
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 
