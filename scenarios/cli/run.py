@@ -17,12 +17,13 @@ if TYPE_CHECKING:
 
 @click.command()
 @options.scenario
-@options.seed("Seed of all randomness.")
+@click.option("--seed", type=click.IntRange(min=0), help="Seed of all randomness.  [default: 0, or that of RUN]")
 @options.plant
 @options.safety("none, decentralised, centralised or robotarium.")
 @options.duration
 @options.changes
 @options.out("Run folder.  [default: runs/SCENARIO-PLANT-seedN]")
+@click.option("--start-from", metavar="RUN", type=click.Path(path_type=Path), help="Begin where that run ended.")
 @click.option("--recording/--no-recording", "recorded", default=True, help="Whether to write recording.rrd.")
 @click.option("--live", is_flag=True, help="Watch the run in a viewer, one that is open or a new one.")
 @click.option(
@@ -30,23 +31,37 @@ if TYPE_CHECKING:
 )
 def run(
     scenario: str,
-    seed: int,
+    seed: int | None,
     plant: str | None,
     safety: str | None,
     duration: float | None,
     changes: tuple[str, ...],
     out: Path | None,
+    start_from: Path | None,
     recorded: bool,
     live: bool,
     speed: float | None,
 ) -> None:
-    """Run SCENARIO (a name or a file), print its result and write its run folder."""
+    """Run SCENARIO (a name or a file), print its result and write its run folder.
+
+    Of a run folder, or the scenario.json in one, the same run is made again, bit for bit: seed, plant, safety, duration
+    and own law as they were. What options change is told.
+    """
+    from scenarios import again
     from scenarios.definition.experiment import open_experiment, require_safety
     from scenarios.one_run import run_to_folder
     from scenarios.terminal import new_console
 
     changes = options.changed(changes, plant, safety)
-    experiment = open_experiment(scenario, changes, duration)
+    if again.is_recorded(scenario):
+        experiment, seed_before = again.open_again(scenario, changes, duration)
+        click.echo(again.notice(scenario, seed_before, seed, changes, duration))
+        seed = seed_before if seed is None else seed
+    else:
+        experiment = open_experiment(scenario, changes, duration)
+    seed = seed or 0
+    if start_from is not None:
+        experiment = again.begin_where(experiment, start_from)
     require_safety(experiment, safety)
     if not run_to_folder(experiment, seed, out, new_console(), recorded, _live(live, speed)):
         raise SystemExit(MISSED)

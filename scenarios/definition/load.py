@@ -107,11 +107,20 @@ def load(scenario: str, changes: Sequence[str] = ()) -> ScenarioFile:
         data = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # besides TOMLDecodeError: numbers too long, nesting too deep
         raise InputError(f"{scenario}: not valid TOML: {error}") from error
-    for change in changes:
-        _apply(data, change)
-    validated = validate(data, scenario)
+    validated = validate(with_changes(data, changes), scenario)
     law = None if validated.law.file is None else law_file.read(scenario, path.parent, validated.law.file)
     return ScenarioFile(path.stem, scenario, head_comment(text), validated, law)
+
+
+def with_changes(data: dict[str, Any], changes: Sequence[str]) -> dict[str, Any]:
+    """The same parsed scenario, changed by ``key=value`` texts as :func:`load` takes them.
+
+    Raises:
+        InputError: a text has no key or no place.
+    """
+    for change in changes:
+        _apply(data, change)
+    return data
 
 
 def head_comment(text: str) -> str:

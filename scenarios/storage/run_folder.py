@@ -151,7 +151,7 @@ def read(folder: Path, under_way: bool = False) -> Run:
     """
     # The command line imports this module before it knows its command; only reading needs the whole experiment.
     from scenarios.definition.experiment import build
-    from scenarios.storage import result_schema, states
+    from scenarios.storage import states
 
     if not folder.exists():
         raise InputError(f"{folder}: no such run folder")
@@ -159,10 +159,8 @@ def read(folder: Path, under_way: bool = False) -> Run:
         raise InputError(f"{folder}: not a run folder, it holds no {RESULT} and {TRAJECTORY}")
     if not under_way and scratch.is_scratch(folder):
         raise InputError(f"{folder}: not a finished run, its process still works or was killed; make the run again")
-    content = read_json(folder / RESULT)
-    result = result_schema.check(folder / RESULT, content)
-    file = _read_scenario(folder, result)
-    experiment = build(file, _asked_duration(file.scenario, result), to_run=False)
+    file, result = read_recipe(folder)
+    experiment = build(file, asked_duration(file.scenario, result), to_run=False)
     for key, recorded, expected in (
         ("plant", result.plant, experiment.plant),
         ("safety", result.safety, experiment.safety),
@@ -185,7 +183,19 @@ def read(folder: Path, under_way: bool = False) -> Run:
     for name in (RESULT, TRAJECTORY):
         if manifest.changed(folder / name):
             raise InputError(f"{folder / name}: changed since the run wrote it ({manifest.NAME}); make the run again")
-    return Run(folder, experiment, trajectory, content)
+    return Run(folder, experiment, trajectory, read_json(folder / RESULT))
+
+
+def read_recipe(folder: Path) -> tuple[ScenarioFile, Result]:
+    """What a run was made from, and what is read of its result.
+
+    Raises:
+        InputError: the folder holds neither, or they were edited.
+    """
+    from scenarios.storage import result_schema
+
+    result = result_schema.check(folder / RESULT, read_json(folder / RESULT))
+    return _read_scenario(folder, result), result
 
 
 def _read_scenario(folder: Path, result: Result) -> ScenarioFile:
@@ -210,8 +220,8 @@ def _read_scenario(folder: Path, result: Result) -> ScenarioFile:
     return ScenarioFile(result.scenario, str(path), "", scenario, law)
 
 
-def _asked_duration(scenario: Scenario, result: Result) -> float | None:
-    """The seconds that replaced the scenario's own; None where none did."""
+def asked_duration(scenario: Scenario, result: Result) -> float | None:
+    """The seconds of a run that replaced the scenario's own; None where none did."""
     if result.asked_duration_s is not None:
         return result.asked_duration_s
     own = sum(phase.duration_s for phase in scenario.phases) or scenario.duration_s

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from itertools import chain, islice
+from contextlib import contextmanager
 
 from scenarios.errors import InputError
 from scenarios.work.protocol import AHEAD, Result, Task

@@ -25,7 +25,9 @@ SHORT = 0.3
 
 def make(scenario: str, folder: Path, *changes: str, duration: float | None = SHORT) -> Path:
     experiment = open_experiment(scenario, ('plant.name="saturated"', *changes), duration)
-    run_to_folder(experiment, 3, folder, Console(quiet=True), recorded=False)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("scenarios.one_run._draw_overview", lambda *_: None)  # takes as long as all else
+        run_to_folder(experiment, 3, folder, Console(quiet=True), recorded=False)
     return folder
 
 
