@@ -24,6 +24,15 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     return f"did you mean {close[0]!r}?" if close else f"known: {', '.join(options)}"
 
 
+def plain(text: str) -> str:
+    """Text as a terminal may show it: what controls one, or cannot be printed, is spelt out.
+
+    >>> print(plain("a\\x1b[31m\\x9b2Jb"))
+    a\\x1b[31m\\x9b2Jb
+    """
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
 @contextmanager
 def located(file: str, field: str) -> Iterator[None]:
     """Give a ValueError of the theory or of the machines the file and the field that it came from."""

@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from scenarios.definition.experiment import Experiment
+from scenarios.errors import plain
 from scenarios.measures.metrics import Metrics, measure
 from scenarios.measures.result import result
 from scenarios.recording import file, viewer
@@ -62,7 +63,7 @@ def run_to_folder(
             _draw_overview(experiment, trajectory, metrics, scratch)
     _close_view(view, live, summary, console)
     print_result(console, summary)
-    console.print(f"run folder: {escape(str(folder))}")
+    console.print(f"run folder: {escape(plain(str(folder)))}")
     return metrics.outcome == "converged"
 
 

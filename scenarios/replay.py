@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rich.console import Console
 
+from scenarios.errors import plain
 from scenarios.recording import file, viewer
 from scenarios.storage import run_folder
 
@@ -46,7 +47,7 @@ def recording_of(folder: Path, scratch: Path, console: Console) -> Path:
         file.write(path, content)
     else:
         kept = "rebuilt"
-    console.print(f"{folder / run_folder.RECORDING}: {wrong}, {kept} from {run_folder.TRAJECTORY}")
+    console.print(plain(f"{folder / run_folder.RECORDING}: {wrong}, {kept} from {run_folder.TRAJECTORY}"), markup=False)
     return path
 
 

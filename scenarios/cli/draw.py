@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from scenarios.cli import options
+from scenarios.errors import plain
 
 
 @click.command()
@@ -29,7 +30,7 @@ def plot(run_folder: Path, out: Path | None, formats: tuple[str, ...]) -> None:
     metrics = measure(experiment, trajectory)
     console = new_console()
     for path in draw(experiment, trajectory, metrics, out or run_folder, names_for(experiment), formats):
-        console.print(str(path), markup=False)
+        console.print(plain(str(path)), markup=False)
 
 
 @click.command()
@@ -50,4 +51,4 @@ def animate(run_folder: Path, form: str, speed: float, fps: float, out: Path | N
     console, path = new_console(), (out or run_folder) / f"animation.{form}"
     with progress_bar(console, path.name) as advance:
         film(experiment, trajectory, measure(experiment, trajectory), path, speed, fps, advance)
-    console.print(str(path), markup=False)
+    console.print(plain(str(path)), markup=False)

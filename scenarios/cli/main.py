@@ -9,7 +9,7 @@ import click
 
 from scenarios.cli import draw, export, look, many, run, study
 from scenarios.cli.exits import BAD_INPUT, INTERRUPTED
-from scenarios.errors import InputError, did_you_mean
+from scenarios.errors import InputError, did_you_mean, plain
 
 FAMILIES: tuple[tuple[click.Command, ...], ...] = (
     (look.list_command, look.show, look.keys),
@@ -61,5 +61,5 @@ def main() -> None:
 
 
 def _fail(message: str) -> None:
-    click.echo(f"formation: {' '.join(message.split())}", err=True)
+    click.echo(f"formation: {plain(' '.join(message.split()))}", err=True)
     sys.exit(BAD_INPUT)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,7 @@ import click
 
 from scenarios.cli import options
 from scenarios.cli.exits import MISSED
-from scenarios.errors import InputError
+from scenarios.errors import InputError, plain
 
 if TYPE_CHECKING:
     from scenarios.recording.viewer import Live
@@ -26,9 +27,7 @@ if TYPE_CHECKING:
 @click.option("--start-from", metavar="RUN", type=click.Path(path_type=Path), help="Begin where that run ended.")
 @click.option("--recording/--no-recording", "recorded", default=True, help="Whether to write recording.rrd.")
 @click.option("--live", is_flag=True, help="Watch the run in a viewer, one that is open or a new one.")
-@click.option(
-    "--speed", type=click.FloatRange(min=0.0, min_open=True), help="With --live: simulated s per s.  [default: 1]"
-)
+@click.option("--speed", type=float, help="With --live: simulated s per s.  [default: 1]")
 def run(
     scenario: str,
     seed: int | None,
@@ -55,7 +54,7 @@ def run(
     changes = options.changed(changes, plant, safety)
     if again.is_recorded(scenario):
         experiment, seed_before = again.open_again(scenario, changes, duration)
-        click.echo(again.notice(scenario, seed_before, seed, changes, duration))
+        click.echo(plain(again.notice(scenario, seed_before, seed, changes, duration)))
         seed = seed_before if seed is None else seed
     else:
         experiment = open_experiment(scenario, changes, duration)
@@ -85,6 +84,8 @@ def _live(live: bool, speed: float | None) -> Live | None:
         if speed is not None:
             raise InputError("--speed: needs --live")
         return None
+    if speed is not None and not 0.0 < speed < math.inf:
+        raise InputError(f"--speed: expected a positive number, got {speed:g}")
     from scenarios.recording.viewer import Live
 
     return Live() if speed is None else Live(speed)

@@ -17,7 +17,7 @@ from scenarios.definition.bounds import LARGEST_INTEGER
 from scenarios.definition.law_file import LawFile
 from scenarios.definition.reading import read_regular
 from scenarios.definition.schema import LawTable, Scenario
-from scenarios.errors import InputError, did_you_mean
+from scenarios.errors import InputError, did_you_mean, plain
 
 LIBRARY = Path(__file__).parents[1] / "library"
 
@@ -95,6 +95,8 @@ def load(scenario: str, changes: Sequence[str] = ()) -> ScenarioFile:
         InputError: no such file, not TOML, content that the schema refuses, or no such law file.
     """
     path = find(scenario)
+    if not path.name.isprintable():
+        raise InputError(f"{scenario}: expected a file name that can be printed")
     try:
         text = read_regular(path).decode("utf-8-sig")  # some editors begin a file with a byte-order mark
     except FileNotFoundError as error:
@@ -133,7 +135,7 @@ def head_comment(text: str) -> str:
     for line in text.splitlines():
         if not line.startswith("#"):
             break
-        lines.append(line.removeprefix("#").removeprefix(" "))
+        lines.append(plain(line.removeprefix("#").removeprefix(" ").replace("\t", " ")))
     return "\n".join(lines)
 
 
@@ -244,6 +246,8 @@ def _explain(error: ValidationError, data: Mapping[str, Any]) -> str:
             expected = "a table"
         case "tuple_type":
             expected = "an array"
+        case "string_pattern_mismatch":
+            expected = "a line without control characters"
         case "too_short":
             expected = f"at least {first['ctx']['min_length']} entries"
         case "too_long":

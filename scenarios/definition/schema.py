@@ -24,6 +24,7 @@ NotNegative = Annotated[float, Field(strict=True, ge=0.0, le=LARGEST, allow_inf_
 AgentNumber = Annotated[int, Field(strict=True, ge=1, le=MOST_AGENTS)]
 Flag = Annotated[bool, Field(strict=True)]
 Vector = tuple[Number, Number]
+Line = Annotated[str, Field(pattern=r"^\P{Cc}*$")]
 
 
 class Table(BaseModel):
@@ -63,7 +64,7 @@ class TargetTable(Table):
 class PhaseTable(Table):
     """One phase of a maneuver."""
 
-    name: str
+    name: Line
     """What a person calls it."""
     duration_s: Positive
     """Its length."""
@@ -213,9 +214,9 @@ class GoalTable(Table):
 class Scenario(Table):
     """A whole scenario file."""
 
-    title: str
+    title: Line
     """One line that `formation list` shows."""
-    source: str = ""
+    source: Annotated[str, Field(pattern=r"^[\P{Cc}\n]*$")] = ""
     """Where the experiment comes from."""
     duration_s: Positive | None = None
     """Length of the run; absent where phases are given."""

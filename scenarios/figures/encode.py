@@ -25,6 +25,12 @@ HOLD = 1.5
 GIF_FPS_LIMIT = 50.0
 """Viewers show faster GIFs slower."""
 
+LEAST_FPS, FPS_LIMIT = 0.1, 1000.0
+"""Frames that stay for ten seconds; and more than any screen shows."""
+
+FASTEST = 1e6
+"""Simulated seconds per second: the longest run in a blink."""
+
 COLOURS = 128
 """Of a GIF's palette; enough for the agents' colours and the steps between them and white."""
 
@@ -57,12 +63,12 @@ def animate(
     Raises:
         InputError: ``speed`` or ``fps`` is out of range, ffmpeg is missing or fails, or the file cannot be written.
     """
-    if not (np.isfinite(speed) and speed > 0.0):
-        raise InputError(f"--speed: expected a positive number, got {speed:g}")
+    if not 0.0 < speed <= FASTEST:
+        raise InputError(f"--speed: expected a positive number up to {FASTEST:g}, got {speed:g}")
     gif = path.suffix == ".gif"
-    if not (np.isfinite(fps) and fps > 0.0) or (gif and fps > GIF_FPS_LIMIT):
-        limit = f" up to {GIF_FPS_LIMIT:g}, which is what viewers of GIFs can show" if gif else ""
-        raise InputError(f"--fps: expected a positive number{limit}, got {fps:g}")
+    most, why = (GIF_FPS_LIMIT, ", which is what viewers of GIFs can show") if gif else (FPS_LIMIT, "")
+    if not LEAST_FPS <= fps <= most:
+        raise InputError(f"--fps: expected a number from {LEAST_FPS:g} to {most:g}{why}, got {fps:g}")
     wanted = trajectory.t[-1] * fps / speed
     if not wanted <= MAX_FRAMES:
         raise InputError(

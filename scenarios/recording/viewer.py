@@ -60,7 +60,7 @@ def show(path: Path, web: bool) -> None:
     Raises:
         InputError: the viewer did not open.
     """
-    command = [executable(), str(path), "--bind", LOOPBACK, "--port", "auto"]
+    command = [executable(), str(path.resolve()), "--bind", LOOPBACK, "--port", "auto"]
     command += ["--web-viewer", "--web-viewer-port", "0"] if web else []
     code = subprocess.run(command, check=False).returncode
     if code != 0:

@@ -29,7 +29,7 @@ def formation(*arguments: str, folder: Path, before: str) -> subprocess.Complete
 @pytest.mark.parametrize("number", CODES)
 def test_a_run_that_is_asked_to_end_in_its_middle_leaves_nothing(tmp_path: Path, number: signal.Signals) -> None:
     """The run sends the signal to itself, so that nothing depends on time."""
-    before = f"import scenarios.one_run; scenarios.one_run.measure = lambda *_: os.kill(os.getpid(), {int(number)})"
+    before = f"import scenarios.one_run; scenarios.one_run.measure = lambda *_: signal.raise_signal({int(number)})"
     done = formation("run", "shape", "--duration", "1", "--out", "mine", folder=tmp_path, before=before)
     assert (done.returncode, done.stdout) == (CODES[number], "")
     assert "Traceback" not in done.stderr

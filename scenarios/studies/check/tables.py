@@ -5,6 +5,7 @@ from __future__ import annotations
 from rich.console import Console
 from rich.markup import escape
 
+from scenarios.errors import plain
 from scenarios.studies.check.compare import worst_first
 from scenarios.studies.check.repeat import Check
 from scenarios.studies.check.reports import Folders
@@ -37,7 +38,7 @@ def print_folders(console: Console, check: Check, folders: Folders) -> None:
     """How to look at the runs that missed."""
     for comparison in check.missed:
         if comparison in folders:
-            console.print(f"formation replay {folders[comparison]}", markup=False)
+            console.print(plain(f"formation replay {folders[comparison]}"), markup=False)
     others = len(check.missed) - len(folders)
     if others:
         console.print(f"and {others} more; `formation run` makes them again")

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from rich.console import Console
 from rich.markup import escape
 
+from scenarios.errors import plain
 from scenarios.studies.sweep.folder import ROWS
 from scenarios.studies.sweep.study import Combination, Study
 from scenarios.studies.sweep.summary import QUANTILES, Share, Summary
@@ -42,7 +43,7 @@ def print_sweep(console: Console, study: Study, swept: Swept) -> None:
     else:
         _print_summary(console, swept.summaries[0])
     _print_missed(console, study, swept.summaries)
-    console.print(f"rows: {escape(str(swept.folder / ROWS))}")
+    console.print(f"rows: {escape(plain(str(swept.folder / ROWS)))}")
 
 
 def _print_missed(console: Console, study: Study, summaries: Sequence[Summary]) -> None:

@@ -154,7 +154,15 @@ def test_a_film_of_countless_frames_is_refused(run: Run, tmp_path: Path) -> None
 
 @pytest.mark.parametrize(
     ("speed", "fps", "field"),
-    [(0.0, 20.0, "--speed"), (np.nan, 20.0, "--speed"), (1.0, 0.0, "--fps"), (1.0, 60.0, "--fps")],
+    [
+        (0.0, 20.0, "--speed"),
+        (np.nan, 20.0, "--speed"),
+        (1.0, 0.0, "--fps"),
+        (1.0, 60.0, "--fps"),
+        (1.0, 1e-3, "--fps"),
+        (1.0, np.nan, "--fps"),
+        (1e300, 20.0, "--speed"),
+    ],
 )
 def test_a_speed_or_frame_rate_that_cannot_be_shown_is_refused(
     run: Run, tmp_path: Path, speed: float, fps: float, field: str

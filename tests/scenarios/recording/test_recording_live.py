@@ -165,7 +165,13 @@ def test_a_watched_run_takes_its_time(speed: float, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "arguments", [["replay", "no/such/run"], ["replay", "a", "b", "c"], ["run", "shape", "--speed", "2"]]
+    "arguments",
+    [
+        ["replay", "no/such/run"],
+        ["replay", "a", "b", "c"],
+        ["run", "shape", "--speed", "2"],
+        *(["run", "shape", "--live", "--speed", speed] for speed in ("nan", "inf", "0", "-1")),
+    ],
 )
 def test_bad_arguments_are_refused(arguments: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
@@ -184,8 +190,10 @@ def test_viewers_are_told_to_listen_on_this_machine_alone(
         return subprocess.CompletedProcess(command, 0)
 
     monkeypatch.setattr(viewer.subprocess, "run", run)
-    viewer.show(tmp_path / "recording.rrd", web)
+    monkeypatch.chdir(tmp_path)
+    viewer.show(Path("-x") / "recording.rrd", web)
     (command,) = commands
+    assert command[1] == str(tmp_path / "-x" / "recording.rrd")  # no option, whatever the folder's name
     assert command[command.index("--bind") + 1] == viewer.LOOPBACK
     assert ("--web-viewer" in command) == web
 
