@@ -2,7 +2,7 @@
 
 import sys
 
-from scenarios import signals
+from scenarios.work import signals
 
 
 def main() -> None:

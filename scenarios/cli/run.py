@@ -46,9 +46,9 @@ def run(
     Of a run folder, or the scenario.json in one, the same run is made again, bit for bit: seed, plant, safety, duration
     and own law as they were. What options change is told.
     """
-    from scenarios import again
     from scenarios.definition.experiment import open_experiment, require_safety
     from scenarios.one_run import run_to_folder
+    from scenarios.storage import again
     from scenarios.terminal import new_console
 
     changes = options.changed(changes, plant, safety)

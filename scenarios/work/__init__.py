@@ -3,4 +3,4 @@
 Knows nothing of formations, nor of the project whose functions it calls.
 """
 
-__all__ = ["cluster", "processes", "protocol", "spread"]
+__all__ = ["cluster", "processes", "protocol", "signals", "spread"]

@@ -10,8 +10,8 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from itertools import chain, islice
 from contextlib import contextmanager
+from itertools import chain, islice
 
 from scenarios.errors import InputError
 from scenarios.work.protocol import AHEAD, Result, Task

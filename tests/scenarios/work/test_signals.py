@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from scenarios.definition.load import LIBRARY
-from scenarios.signals import INTERRUPTED, TERMINATED
+from scenarios.work.signals import INTERRUPTED, TERMINATED
 
 CODES = {signal.SIGINT: INTERRUPTED, signal.SIGTERM: TERMINATED}
 
