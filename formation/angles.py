@@ -66,6 +66,23 @@ class AngleSet:
         i, j, k = graph.triangles.T
         return cls(np.stack([np.stack([j, i, k], axis=1), np.stack([k, i, j], axis=1)], axis=1).reshape(-1, 3))
 
+    @classmethod
+    def of_places(cls, positions: ArrayLike) -> AngleSet:
+        """Two angles of one triangle for each agent k = 3..n, with the two earlier agents i < j that make it roundest.
+
+        They fix the shape of positions (n, 2) whatever the sensing graph is. Roundest: its smallest sine is greatest.
+        """
+        p = as_complex(positions)
+        triples = []
+        for k in range(agents.FIRST_ORDINARY, len(p)):
+            i, j = np.triu_indices(k, k=1)
+            sides = np.abs(np.stack([p[i] - p[j], p[i] - p[k], p[j] - p[k]]))
+            area = np.abs(((p[i] - p[k]) * np.conj(p[j] - p[k])).imag)
+            longest = np.maximum(sides.max(axis=0), np.finfo(float).tiny)
+            best = int((area / longest**2).argmax())
+            triples += [(j[best], i[best], k), (k, i[best], j[best])]
+        return cls(np.array(triples))
+
     def __len__(self) -> int:
         return len(self.triples)
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from formation import agents
 from formation.constraint import constraint_coefficients, interior_angles
+from formation.framework import Framework
 from formation.graph.sensing import SensingGraph
 from formation.plane import Complex, Real, as_complex, as_vectors
 
@@ -17,7 +18,7 @@ DEGENERATE_SINE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class TargetFormation:
+class TargetFormation(Framework):
     """A strongly nondegenerate framework (G_f, p*).
 
     Attributes:
@@ -30,21 +31,9 @@ class TargetFormation:
     """
 
     graph: SensingGraph
-    positions: Real
 
     def __post_init__(self) -> None:
-        p = np.array(self.positions, dtype=np.float64)
-        if p.shape != (self.graph.n, 2):
-            raise ValueError(f"target positions must have the shape ({self.graph.n}, 2), got {p.shape}")
-        if (bad := np.flatnonzero(~np.isfinite(p).all(axis=1))).size:
-            raise ValueError(f"target position of {agents.name(bad[0])} is not finite: {p[bad[0]].tolist()}")
-        if (p[agents.LEADER] == p[agents.FIRST_FOLLOWER]).all():
-            raise ValueError(
-                f"leader and first follower coincide in the target at {p[agents.LEADER].tolist()}, "
-                "their distance fixes the scale and must not be 0"
-            )
-        p.flags.writeable = False
-        object.__setattr__(self, "positions", p)
+        super().__post_init__()
         sine = np.abs(np.sin(self.follower_angles))
         degenerate = ~(sine > DEGENERATE_SINE)  # also true for NaN: two corners of the triangle coincide
         if (bad := np.flatnonzero(degenerate)).size:

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 from robots.arena import ROBOTARIUM_FLOOR as ROBOTARIUM_FLOOR
 from robots.arena import Arena as Arena
 from robots.drive import DifferentialDrive as DifferentialDrive
+from robots.instruments import Imperfections as Imperfections
+from robots.instruments import Instruments as Instruments
 from robots.model import GTERNAL as GTERNAL
 from robots.model import Chassis as Chassis
 from robots.model import RobotModel as RobotModel

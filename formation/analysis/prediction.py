@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from formation import agents
+from formation.framework import Framework
 from formation.plane import Real, as_complex, as_vectors
 from formation.target import TargetFormation
 
@@ -35,7 +36,7 @@ class Similarity:
         return as_vectors(turned + complex(*self.translation))
 
 
-def end_similarity(target: TargetFormation, leader: Real, first_follower: Real) -> Similarity:
+def end_similarity(target: Framework, leader: Real, first_follower: Real) -> Similarity:
     """c, theta and xi of the end configuration (paper, eq. (cdager) to the end of Section 3.2).
 
     Args:
@@ -61,12 +62,12 @@ def end_similarity(target: TargetFormation, leader: Real, first_follower: Real) 
     )
 
 
-def end_configuration(target: TargetFormation, leader: Real, first_follower: Real) -> Real:
+def end_configuration(target: Framework, leader: Real, first_follower: Real) -> Real:
     """(n, 2) the configuration p_dagger to which Theorem 1 says the agents converge, metres."""
     return end_similarity(target, leader, first_follower)(target.positions)
 
 
-def fit_similarity(target: TargetFormation, points: Real) -> tuple[Real, Real, Real]:
+def fit_similarity(target: Framework, points: Real) -> tuple[Real, Real, Real]:
     """The similarity that carries the target closest to points (..., n, 2), in the sense of least squares.
 
     Returns:

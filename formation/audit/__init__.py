@@ -11,7 +11,17 @@ from collections.abc import Callable
 
 import numpy as np
 
-from formation.audit.measurements import batches, frames, locality, mirrored_frames, output, repeats
+from formation.audit.measurements import (
+    batches,
+    compass,
+    frames,
+    graph_kind,
+    locality,
+    measurements,
+    mirrored_frames,
+    output,
+    repeats,
+)
 from formation.audit.subject import Finding as Finding
 from formation.audit.subject import Subject as Subject
 from formation.audit.target import derivative, fixes, mirror_image, rest, sampling, stability, zero_modes
@@ -31,6 +41,9 @@ def audit(subject: Subject, control_period: float, seed: int = 0) -> list[Findin
         "same answer again": repeats,
         "batches": batches,
         "locality": locality,
+        "graph": graph_kind,
+        "measurements": measurements,
+        "compass": compass,
         "local frames": frames,
         "mirrored frames": mirrored_frames,
         "rest at the target": rest,

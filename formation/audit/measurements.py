@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from formation import agents
-from formation.audit.subject import REST, SAME, Finding, Subject
+from formation.audit.subject import REST, SAME, Finding, Measured, Subject
+from formation.graph.conditions import CONDITIONS
+from formation.graph.edges import edge_name
+from formation.laws.protocol import needs
+from formation.measurements import EACH
 from formation.plane import Real
 
 RELATIVE = "relative"
@@ -58,18 +64,16 @@ def batches(subject: Subject, rng: np.random.Generator) -> Finding:
 def locality(subject: Subject, rng: np.random.Generator) -> Finding:
     """No agent's velocity changes where every row that others measure is NaN, nor where it is any other number."""
     points = subject.places(rng)[0]
-    relative, compass = subject.measure(points)
-    whole = subject.ask(relative, compass)
+    measured, compass = subject.measure(points)
+    whole = subject.ask(measured, compass)
     tolerance = SAME * np.linalg.norm(whole, axis=1).max()
-    observer = subject.graph.edges[:, 0]
-    noise = rng.normal(0.0, subject.size, relative.shape)
+    noise = [rng.normal(0.0, subject.size, array.shape) for array in measured]
     worst, reader = 0.0, None
     for k in range(subject.graph.n):
-        others = observer != k
         strange = np.arange(subject.graph.n) != k
         poisoned = None if compass is None else np.where(strange[:, None], np.nan, compass)
-        blind = subject.ask(np.where(others[:, None], np.nan, relative), poisoned)[k]
-        moved = subject.ask(np.where(others[:, None], noise, relative), compass)[k]
+        blind = subject.ask(_foreign(subject, k, measured, [np.nan] * len(measured)), poisoned)[k]
+        moved = subject.ask(_foreign(subject, k, measured, noise), compass)[k]
         change = float(np.linalg.norm(moved - whole[k]))
         leaks = not np.linalg.norm(blind - whole[k]) <= tolerance
         worst = max(worst, change)
@@ -78,18 +82,43 @@ def locality(subject: Subject, rng: np.random.Generator) -> Finding:
     if reader is None:
         return Finding("locality", True, worst, "m/s", "no agent is moved by what others measure")
     spread = "" if worst > tolerance else ", if only its NaN"
-    remark = f"{agents.name(reader)} reads {_read_by(subject, reader, relative, compass, whole[reader])}{spread}"
+    remark = f"{agents.name(reader)} reads {_read_by(subject, reader, measured, compass, whole[reader])}{spread}"
     return Finding("locality", False, worst, "m/s", remark)
 
 
-def _read_by(subject: Subject, k: int, relative: Real, compass: Real | None, whole: Real) -> str:
-    """What agent k reads and does not measure: the first sensing edge whose NaN reaches it, or else a compass."""
-    edges = subject.graph.edges
-    for row in np.flatnonzero(edges[:, 0] != k):
-        poisoned = np.where((np.arange(len(edges)) == row)[:, None], np.nan, relative)
-        if not np.allclose(subject.ask(poisoned, compass)[k], whole):
-            return f"edge ({agents.number(edges[row, 0])}, {agents.number(edges[row, 1])})"
+def _foreign(subject: Subject, k: int, measured: Measured, instead: Sequence[Real | float]) -> Measured:
+    """The measurements with all that agent k does not measure itself replaced."""
+    replaced = []
+    for kind, array, other in zip(subject.kinds, measured, instead, strict=True):
+        foreign = subject.observers(kind) != k
+        replaced.append(np.where(foreign.reshape(-1, *[1] * (array.ndim - 1)), other, array))
+    return tuple(replaced)
+
+
+def _read_by(subject: Subject, k: int, measured: Measured, compass: Real | None, whole: Real) -> str:
+    """What agent k reads and does not measure: the first row whose NaN reaches it, or else a compass."""
+    edges, corners = subject.graph.edges, subject.graph.corners
+    for place, kind in enumerate(subject.kinds):
+        for row in np.flatnonzero(subject.observers(kind) != k):
+            poisoned = list(measured)
+            poisoned[place] = measured[place].copy()
+            poisoned[place][row] = np.nan
+            if not np.allclose(subject.ask(tuple(poisoned), compass)[k], whole):
+                named = [edge_name(edges[each]) for each in ([row] if EACH[kind] == "edge" else corners[row])]
+                return f"edge{'s' * (len(named) > 1)} {' '.join(named)}"
     return "the compass of others"
+
+
+def measurements(subject: Subject, rng: np.random.Generator) -> Finding:
+    """Each kind that the law declares moves it: NaN in all of its rows is noticed."""
+    measured, compass = subject.measure(subject.places(rng)[0])
+    whole = subject.ask(measured, compass)
+    for place, kind in enumerate(subject.kinds):
+        poisoned = list(measured)
+        poisoned[place] = np.full_like(measured[place], np.nan)
+        if (subject.ask(tuple(poisoned), compass) == whole).all():
+            return Finding("measurements", False, remark=f"declares the {kind} and does not use it")
+    return Finding("measurements", True, float(len(subject.kinds)), "kinds", f"{', '.join(subject.kinds)}: all used")
 
 
 def frames(subject: Subject, rng: np.random.Generator) -> Finding:
@@ -106,7 +135,11 @@ def mirrored_frames(subject: Subject, rng: np.random.Generator) -> Finding:
     change = _change_by_frames(subject, rng, mirrored=True)
     free = change.max() <= SAME
     remark = "no common sense of rotation is needed" if free else "a common sense of rotation is needed"
-    return Finding("mirrored frames", None, float(change.max()), RELATIVE, remark)
+    declared = needs(subject.law).handedness
+    if declared is None:
+        return Finding("mirrored frames", None, float(change.max()), RELATIVE, remark)
+    word = "as declared" if declared != free else "declared otherwise"
+    return Finding("mirrored frames", bool(declared != free), float(change.max()), RELATIVE, f"{remark}, {word}")
 
 
 def _change_by_frames(subject: Subject, rng: np.random.Generator, mirrored: bool) -> Real:
@@ -118,3 +151,24 @@ def _change_by_frames(subject: Subject, rng: np.random.Generator, mirrored: bool
         change = np.linalg.norm(subject(points, turned, mirrored) - upright, axis=1)
         changes = np.maximum(changes, change / max(np.linalg.norm(upright, axis=1).max(), REST * subject.size))
     return changes
+
+
+def compass(subject: Subject, rng: np.random.Generator) -> Finding:
+    """A law that declares a compass uses it: where it shows other directions, agents move otherwise."""
+    if not subject.law.needs_compass:
+        return Finding("compass", None, remark="none is declared, none is given")
+    measured, shown = subject.measure(subject.places(rng)[0])
+    whole = subject.ask(measured, shown)
+    used = bool((subject.ask(measured, np.full_like(whole, np.nan)) != whole).any())
+    return Finding("compass", used, remark="needed, as declared" if used else "declared and not used")
+
+
+def graph_kind(subject: Subject, rng: np.random.Generator) -> Finding:
+    """The sensing graph is of the kind that the law declares."""
+    condition = needs(subject.law).graph
+    try:
+        CONDITIONS[condition](subject.target)
+    except ValueError as error:
+        return Finding("graph", False, remark=f"declared to be {condition}: {error}")
+    edges = len(subject.graph.edges)
+    return Finding("graph", True, float(edges), "edges", f"{condition}, as declared")

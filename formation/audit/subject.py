@@ -10,10 +10,15 @@ import numpy as np
 from formation import agents
 from formation.analysis.linearisation import Linearisation, linearise
 from formation.analysis.prediction import end_configuration
-from formation.graph.sensing import SensingGraph
-from formation.laws.protocol import FormationLaw
+from formation.framework import Framework
+from formation.graph.directed import Graph
+from formation.graph.edges import Index
+from formation.laws.protocol import FormationLaw, needs
+from formation.measurements import EACH, perfect
 from formation.plane import Complex, Real, as_complex, as_vectors
-from formation.target import TargetFormation
+
+Measured = tuple[Real, ...]
+"""One array for each kind of measurement that a law declares, in its order."""
 
 PLACES = 5
 """Random configurations at which a property is looked for."""
@@ -61,12 +66,17 @@ class Subject:
     """
 
     law: FormationLaw
-    target: TargetFormation
+    target: Framework
     delta: tuple[float, float] | None = None
 
     @property
-    def graph(self) -> SensingGraph:
+    def graph(self) -> Graph:
         return self.target.graph
+
+    @cached_property
+    def kinds(self) -> tuple[str, ...]:
+        """The kinds of measurements that the law declares."""
+        return needs(self.law).measures
 
     @cached_property
     def positions(self) -> Real:
@@ -85,8 +95,10 @@ class Subject:
         """(:data:`PLACES`, n, 2) random configurations about the target, metres."""
         return self.positions + rng.normal(0.0, self.size, (PLACES, *self.positions.shape))
 
-    def measure(self, points: Real, frames: Complex | None = None, mirrored: bool = False) -> tuple[Real, Real | None]:
-        """What the agents at points (..., n, 2), metres, measure: relative positions and, if it is needed, the compass.
+    def measure(
+        self, points: Real, frames: Complex | None = None, mirrored: bool = False
+    ) -> tuple[Measured, Real | None]:
+        """What the agents at points (..., n, 2), metres, measure, and the compass if it is needed.
 
         ``frames`` (n,) are the x axes of the agents' frames, unit complex numbers; the common frame where absent.
         """
@@ -97,11 +109,17 @@ class Subject:
         compass = np.broadcast_to(turn, p.shape)
         if mirrored:
             relative, compass = np.conj(relative), np.conj(compass)
-        return as_vectors(relative), as_vectors(compass) if self.law.needs_compass else None
+        measured = perfect(self.kinds, as_vectors(relative), self.graph.corners)
+        return measured, as_vectors(compass) if self.law.needs_compass else None
 
-    def ask(self, relative: Real, compass: Real | None) -> Real:
+    def observers(self, kind: str) -> Index:
+        """Who measures each row of a kind of measurement."""
+        edges = self.graph.edges[:, 0]
+        return edges if EACH[kind] == "edge" else edges[self.graph.corners[:, 0]]
+
+    def ask(self, measured: Measured, compass: Real | None) -> Real:
         """The law's velocities (..., n, 2), m/s, each in its agent's own frame."""
-        return np.array(self.law(relative, compass, None if self.delta is None else np.array(self.delta)))
+        return np.array(self.law(*measured, compass, None if self.delta is None else np.array(self.delta)))
 
     def __call__(self, points: Real, frames: Complex | None = None, mirrored: bool = False) -> Real:
         """Velocities (n, 2), m/s, in the common frame, of agents at points (n, 2), metres, each in its frame."""

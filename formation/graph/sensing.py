@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from formation import agents
-
-Index = NDArray[np.intp]
+from formation.graph.edges import Index as Index
+from formation.graph.edges import corners
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,6 +120,11 @@ class SensingGraph:
         first = [[agents.FIRST_FOLLOWER, agents.LEADER]]
         rest = np.stack([np.repeat(self.followers, 2), self.neighbours.ravel()], axis=1)
         return np.concatenate([np.array(first, dtype=np.intp), rest])
+
+    @cached_property
+    def corners(self) -> Index:
+        """(n - 2, 2) rows of :attr:`edges` that share an observer: the two edges of each follower."""
+        return corners(self.edges)
 
     @cached_property
     def triangles(self) -> Index:

@@ -12,12 +12,13 @@ from __future__ import annotations
 import numpy as np
 
 from formation import agents
+from formation.laws.base import Law
 from formation.laws.first_follower import COMPASS_FREE, EDGE_LAWS
 from formation.plane import Complex, Real, as_complex, as_vectors
 from formation.target import TargetFormation
 
 
-class AngleLaw:
+class AngleLaw(Law):
     """The law of all agents at once.
 
     Attributes:
@@ -27,6 +28,11 @@ class AngleLaw:
     Raises:
         ValueError: ``first_follower`` names no law of :data:`EDGE_LAWS`.
     """
+
+    name = "angle"
+    sources = ("CLM2022auto",)
+    needs_handedness = True
+    leaders = 2
 
     def __init__(self, target: TargetFormation, first_follower: str = "stationary") -> None:
         if first_follower not in EDGE_LAWS:

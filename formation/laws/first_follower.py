@@ -43,7 +43,11 @@ def bearing(e: Complex, delta: Complex) -> Complex:
 
     Steers the orientation. Needs a compass. NaN while the two agents coincide: no bearing exists there.
     """
-    b = e / np.abs(e)
+    return align(e / np.abs(e), delta)
+
+
+def align(b: Complex, delta: Complex) -> Complex:
+    """P_b b* from a bearing b: what a law makes of it whose agents measure no distances."""
     b_star = delta / np.abs(delta)
     return b_star - b * (np.conj(b) * b_star).real
 

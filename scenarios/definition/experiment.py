@@ -9,29 +9,40 @@ import numpy as np
 from numpy.typing import NDArray
 
 from formation import (
+    LAWS,
     AngleLaw,
     AngleSet,
-    ComparisonLaw,
     FormationLaw,
+    Framework,
+    Graph,
     Phase,
-    SensingGraph,
     TargetFormation,
     VelocityEstimator,
     agents,
+    needs,
 )
-from robots import GTERNAL, Arena, NearIdentityDiffeomorphism, RobotModel
-from robots import RelativePositionSensor as Sensor
+from formation.laws.base import ORIENTATION, SCALE
+from formation.measurements import ANGLE, RATIO
+from robots import GTERNAL, Arena, Imperfections, Instruments, NearIdentityDiffeomorphism, RobotModel
 from robots.obstacles import Obstacle
 from robots.safety import FilterSettings
 from scenarios.definition.bounds import check_size
+from scenarios.definition.formations import Aim, build_aim, with_graph
 from scenarios.definition.load import ScenarioFile, load
-from scenarios.definition.own_law import NotLoaded, make_own_law
+from scenarios.definition.own_law import NotLoaded, OwnFactory
 from scenarios.definition.schema import Scenario
 from scenarios.definition.starts import Starts, build_starts
-from scenarios.definition.targets import build_target
 from scenarios.errors import InputError, located
 
 Real = NDArray[np.float64]
+
+FIRST_FOLLOWERS = {
+    frozenset[str](): "stationary",
+    frozenset({SCALE}): "distance",
+    frozenset({ORIENTATION}): "bearing",
+    frozenset({SCALE, ORIENTATION}): "displacement",
+}
+"""How agent 2 moves in the end, a name of :data:`formation.EDGE_LAWS`, by what of delta a law follows."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,9 +51,7 @@ class Experiment:
 
     Attributes:
         file: the scenario with its origin.
-        target: the target formation with its sensing graph.
-        angles: the angles that are measured and compared.
-        target_angles: (m,) their targets, radians, exact.
+        aim: the formation that the law is made for, and the angles that are compared.
         starts: the initial state, as far as the scenario fixes it.
         phases: the maneuver, a single phase for shape control.
         law: the formation law.
@@ -51,14 +60,12 @@ class Experiment:
     """
 
     file: ScenarioFile
-    target: TargetFormation
-    angles: AngleSet
-    target_angles: Real
+    aim: Aim
     starts: Starts
     phases: tuple[Phase, ...]
     law: FormationLaw
     estimator: VelocityEstimator | None
-    sensor: Sensor
+    instruments: Instruments
     nid: NearIdentityDiffeomorphism
     robot: RobotModel
     arena: Arena
@@ -82,8 +89,35 @@ class Experiment:
         return "none" if self.plant == "single_integrator" else self.scenario.safety.filter
 
     @property
-    def graph(self) -> SensingGraph:
-        return self.target.graph
+    def formation(self) -> Framework:
+        """The target's shape on the graph along which the law measures."""
+        return self.aim.formation
+
+    @property
+    def graph(self) -> Graph:
+        """Who senses whom."""
+        return self.formation.graph
+
+    @property
+    def target(self) -> TargetFormation:
+        """The target on the leader-first-follower graph that the paper's theory speaks of.
+
+        Raises:
+            InputError: the scenario's graph is of another kind.
+        """
+        if self.aim.target is None:
+            raise InputError(f"{self.file.path}: agents: expected a leader-first-follower graph")
+        return self.aim.target
+
+    @property
+    def angles(self) -> AngleSet:
+        """The angles that are measured and compared."""
+        return self.aim.angles
+
+    @property
+    def target_angles(self) -> Real:
+        """(m,) the angles' targets, radians, exact."""
+        return self.aim.target_angles
 
     @property
     def n(self) -> int:
@@ -102,14 +136,14 @@ class Experiment:
         Of an own law, the one that keeps or reaches the commanded displacement: what a reference for it is drawn from.
         """
         law = self.scenario.law
-        if law.name == "own":
-            return "displacement"
-        return law.first_follower if law.name == "angle" else law.name
+        if law.name == "angle":
+            return law.first_follower
+        return "displacement" if law.name == "own" else FIRST_FOLLOWERS[LAWS[law.name].steers]
 
     @property
     def predicted(self) -> bool:
-        """Whether the theory says where the run ends; it says nothing of an own law."""
-        return self.scenario.law.name != "own"
+        """Whether the theory says where the run ends: of laws with a leader and a first follower, not of an own law."""
+        return self.scenario.law.name != "own" and LAWS[self.scenario.law.name].leaders in (1, 2)
 
     def initial_points(self, seed: int) -> Real:
         """(n, 2) initial projected points of the run with that seed, metres."""
@@ -150,24 +184,25 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
     if duration is not None and not (np.isfinite(duration) and duration > 0.0):
         raise InputError(f"--duration: expected a positive number of seconds, got {duration:g}")
     check_size(path, scenario, duration)
-    target, angles, target_angles = build_target(path, scenario)
+    aim = build_aim(path, scenario)
     with located(path, "robot"):
         robot = _robot(scenario)
         nid = NearIdentityDiffeomorphism(scenario.robot.projection_distance_m)
     if scenario.sensor.delay_periods and scenario.plant.name == "single_integrator":
         raise InputError(f"{path}: sensor.delay_periods: the plant single_integrator is continuous, expected 0")
     arena = _arena(path, scenario)
-    phases = _phases(path, scenario, target, duration)
+    phases = _phases(path, scenario, aim.formation, duration)
+    law, aim = _law(file, aim, phases, to_run)
+    if scenario.law.activation == "sequential" and aim.formation is not aim.target:
+        raise InputError(f"{path}: law.activation: 'sequential' needs a leader-first-follower graph")
     return Experiment(
         file=file,
-        target=target,
-        angles=angles,
-        target_angles=target_angles,
-        starts=build_starts(path, scenario, target, arena),
+        aim=aim,
+        starts=build_starts(path, scenario, aim.formation, arena),
         phases=phases,
-        law=_law(file, target, phases, to_run),
-        estimator=_estimator(path, scenario, target.graph),
-        sensor=_sensor(scenario, target.graph),
+        law=law,
+        estimator=_estimator(path, scenario, aim.formation.graph),
+        instruments=_instruments(path, scenario, law, aim.formation.graph),
         nid=nid,
         robot=robot,
         arena=arena,
@@ -198,18 +233,21 @@ def _filter_settings(path: str, scenario: Scenario) -> FilterSettings:
         )
 
 
-def _law(file: ScenarioFile, target: TargetFormation, phases: tuple[Phase, ...], to_run: bool) -> FormationLaw:
+def _law(file: ScenarioFile, aim: Aim, phases: tuple[Phase, ...], to_run: bool) -> tuple[FormationLaw, Aim]:
+    """The law, and the aim with the graph that it is made for, which an own law's file may decide."""
     table = file.scenario.law
-    if table.name == "angle":
-        return AngleLaw(target, table.first_follower)
+    if table.name == "angle" and aim.target is not None:
+        return AngleLaw(aim.target, table.first_follower), aim
     if table.name != "own":
-        return ComparisonLaw(target, table.name)
+        return LAWS[table.name](aim.formation), aim
     if not to_run or file.law is None or table.factory is None:
-        return NotLoaded()
-    return make_own_law(file.path, file.law, table.factory, table.parameters, target, phases[0].delta)
+        return NotLoaded(), aim
+    factory = OwnFactory(file.path, file.law, table.factory, table.parameters)
+    aim = with_graph(file.path, file.scenario, aim, factory.graph)
+    return factory.make(aim.formation, phases[0].delta), aim
 
 
-def _estimator(path: str, scenario: Scenario, graph: SensingGraph) -> VelocityEstimator | None:
+def _estimator(path: str, scenario: Scenario, graph: Graph) -> VelocityEstimator | None:
     if scenario.velocity_known_by == "all":
         return None
     table = scenario.communication
@@ -218,8 +256,20 @@ def _estimator(path: str, scenario: Scenario, graph: SensingGraph) -> VelocityEs
         return VelocityEstimator(graph.n, edges, table.gain_per_s)
 
 
-def _sensor(scenario: Scenario, graph: SensingGraph) -> Sensor:
-    return Sensor(graph.edges, scenario.sensor.position_noise_m, np.radians(scenario.sensor.bearing_noise_deg))
+def _instruments(path: str, scenario: Scenario, law: FormationLaw, graph: Graph) -> Instruments:
+    table, kinds = scenario.sensor, needs(law).measures
+    imperfections = Imperfections(
+        position=table.position_noise_m,
+        bearing=np.radians(table.bearing_noise_deg),
+        distance=table.distance_noise_m,
+        angle=np.radians(table.angle_noise_deg),
+        ratio=table.ratio_noise,
+        edge_loss=table.edge_loss,
+        dropout=table.dropout,
+    )
+    corners = graph.corners if {ANGLE, RATIO} & set(kinds) else ()
+    with located(path, "law.measures"):
+        return Instruments(graph.edges, corners, kinds, imperfections)
 
 
 def _robot(scenario: Scenario) -> RobotModel:
@@ -230,9 +280,9 @@ def _robot(scenario: Scenario) -> RobotModel:
     )
 
 
-def _phases(path: str, scenario: Scenario, target: TargetFormation, duration: float | None) -> tuple[Phase, ...]:
+def _phases(path: str, scenario: Scenario, formation: Framework, duration: float | None) -> tuple[Phase, ...]:
     """The maneuver, cut or extended to ``duration``; one phase named after the law's aim where no phases are given."""
-    deltas = _displacements(path, scenario, target)
+    deltas = _displacements(path, scenario, formation)
     if not scenario.phases:
         return (Phase("shape", duration or scenario.duration_s or 0.0, delta=deltas[0]),)
     phases, elapsed = [], 0.0
@@ -247,8 +297,8 @@ def _phases(path: str, scenario: Scenario, target: TargetFormation, duration: fl
     return tuple(phases)
 
 
-def _displacements(path: str, scenario: Scenario, target: TargetFormation) -> list[tuple[float, float] | None]:
-    """delta_12 of each phase: the scenario's, or that of p* for a comparison law."""
+def _displacements(path: str, scenario: Scenario, formation: Framework) -> list[tuple[float, float] | None]:
+    """delta_12 of each phase: the scenario's, or that of p* for a law that takes its own from the target."""
     given = [phase.displacement_m for phase in scenario.phases] or [None]
     for number, delta in enumerate(given, start=1):
         if delta is not None and not any(delta):
@@ -256,12 +306,12 @@ def _displacements(path: str, scenario: Scenario, target: TargetFormation) -> li
     if scenario.law.name == "own":
         return given
     if scenario.law.name != "angle":
-        if any(delta is not None for delta in given):
-            raise InputError(
-                f"{path}: phases.displacement_m: the {scenario.law.name} law takes its own from the target"
-            )
-        x, y = target.positions[agents.FIRST_FOLLOWER] - target.positions[agents.LEADER]
-        return [(float(x), float(y))] * len(given)
+        if not LAWS[scenario.law.name].steers:
+            if any(delta is not None for delta in given):
+                raise InputError(f"{path}: phases.displacement_m: the {scenario.law.name} law follows none")
+            return given
+        x, y = formation.positions[agents.FIRST_FOLLOWER] - formation.positions[agents.LEADER]
+        return [(float(x), float(y)) if delta is None else delta for delta in given]
     if scenario.law.first_follower == "stationary":
         return given
     if not scenario.phases:

@@ -6,14 +6,16 @@ Every mistake of the user's code is bad input, told in one line with the line of
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from formation import FormationLaw, TargetFormation
+from formation import FormationLaw, Framework, needs
+from formation.laws.protocol import LEADER_FIRST_FOLLOWER
+from formation.measurements import ANGLE, KINDS, RATIO, perfect
 from scenarios.definition.law_file import LawFile
 from scenarios.errors import InputError, did_you_mean
 
@@ -32,10 +34,11 @@ class OwnLaw:
     Attributes:
         raw: what the user's factory made.
         needs_compass: whether an agent needs the common x axis in its own frame.
+        needs_handedness, measures, graph, communicates: as the user's law declares them.
         batched: whether the user's code takes leading batch dimensions.
     """
 
-    def __init__(self, file: LawFile, raw: FormationLaw, target: TargetFormation, delta: Real | None) -> None:
+    def __init__(self, file: LawFile, raw: FormationLaw, target: Framework, delta: Real | None) -> None:
         if not callable(raw):
             raise InputError(f"{file.path}: expected a law that can be called, got {_kind(raw)} without __call__")
         if not hasattr(raw, "needs_compass"):
@@ -44,35 +47,51 @@ class OwnLaw:
             raise InputError(f"{file.path}: {_kind(raw)}.needs_compass: expected bool, got {raw.needs_compass!r:.80}")
         self.raw, self.needs_compass = raw, raw.needs_compass
         self._file, self._target = file, target
+        declared = needs(raw)
+        for kind in declared.measures:
+            if kind not in KINDS:
+                known = did_you_mean(str(kind), KINDS)
+                raise InputError(f"{file.path}: {_kind(raw)}.measures: no such kind {kind!r:.80}, {known}")
+        if not declared.measures:
+            raise InputError(f"{file.path}: {_kind(raw)}.measures: expected at least one kind, got none")
+        self.measures, self.graph, self.communicates = declared.measures, declared.graph, declared.communicates
+        self.needs_handedness = declared.handedness
         self.batched = self._takes_batches(delta)
 
-    def __call__(self, relative: Real, compass: Real | None = None, delta: Real | None = None) -> Real:
-        """Velocities (..., n, 2), m/s, from relative positions (..., 2n - 3, 2); see :class:`FormationLaw`.
+    def __call__(self, *arguments: Real | None) -> Real:
+        """Velocities (..., n, 2), m/s, from what is measured, compass and delta; see :class:`FormationLaw`.
 
         Raises:
             InputError: the user's code raises, or returns something else.
         """
-        batch = relative.shape[:-2]
+        given = [*arguments, *[None] * (len(self.measures) + 2 - len(arguments))]
+        arrays = [array for array in given[: len(self.measures)] if array is not None]
+        compass, delta = given[len(self.measures) :]
+        batch = self._batch(arrays)
         if self.batched or not batch:
-            return self._ask(relative, compass, delta)
+            return self._ask(arrays, compass, delta)
         velocities = np.empty((*batch, self._target.graph.n, 2))
         for index in np.ndindex(batch):
-            velocities[index] = self._ask(relative[index], None if compass is None else compass[index], delta)
+            own = None if compass is None else compass[index]
+            velocities[index] = self._ask([array[index] for array in arrays], own, delta)
         return velocities
 
-    def _ask(self, relative: Real, compass: Real | None, delta: Real | None) -> Real:
+    def _batch(self, measured: Sequence[Real]) -> tuple[int, ...]:
+        return measured[0].shape[: measured[0].ndim - KINDS[self.measures[0]]]
+
+    def _ask(self, measured: Sequence[Real], compass: Real | None, delta: Real | None) -> Real:
         try:
             with np.errstate(all="ignore"):  # NaN is an outcome, not a warning
                 answer = np.asarray(
                     self.raw(
-                        _sealed(relative),
+                        *(_sealed(array) for array in measured),
                         None if compass is None else _sealed(compass),
                         None if delta is None else _sealed(delta),
                     )
                 )
         except (Exception, SystemExit) as error:
             raise self._file.failure("a call of the law", error) from error
-        shape = (*relative.shape[:-2], self._target.graph.n, 2)
+        shape = (*self._batch(measured), self._target.graph.n, 2)
         if answer.shape != shape:
             raise InputError(f"{self._file.path}: expected velocities of the shape {shape}, got {answer.shape}")
         if not np.issubdtype(answer.dtype, np.floating):
@@ -85,9 +104,11 @@ class OwnLaw:
         p = self._target.positions + rng.normal(0.0, self._target.positions.std(), (2, graph.n, 2))
         relative = p[:, graph.edges[:, 1]] - p[:, graph.edges[:, 0]]
         compass = np.tile([1.0, 0.0], (2, graph.n, 1)) if self.needs_compass else None
-        apart = [self._ask(relative[k], None if compass is None else compass[k], delta) for k in range(2)]
+        corners = graph.corners if {ANGLE, RATIO} & set(self.measures) else np.empty((0, 2), dtype=np.intp)
+        measured = perfect(self.measures, relative, corners)
+        apart = [self._ask([a[k] for a in measured], None if compass is None else compass[k], delta) for k in range(2)]
         try:
-            together = self._ask(relative, compass, delta)
+            together = self._ask(measured, compass, delta)
         except InputError:
             return False
         tolerance = SAME * np.abs(np.nan_to_num(apart)).max()
@@ -99,44 +120,53 @@ class NotLoaded:
 
     needs_compass = False
 
-    def __call__(self, relative: Real, compass: Real | None = None, delta: Real | None = None) -> Real:
+    def __call__(self, *arguments: Real | None) -> Real:
         raise InputError("law: that of a run that was read back cannot run")
 
 
-def make_own_law(
-    scenario: str,
-    file: LawFile,
-    factory: str,
-    parameters: Mapping[str, float],
-    target: TargetFormation,
-    delta: tuple[float, float] | None,
-) -> OwnLaw:
-    """Execute the file, call its factory once as ``factory(target, **parameters)``, and try the law that it makes.
+class OwnFactory:
+    """What makes a user's law: executes the file and finds the factory in it.
 
     Args:
         scenario: the scenario file, for messages.
         file: of the law.
-        factory: name of the function or class in the file.
+        name: of the function or class in the file.
         parameters: of the factory, by name.
-        target: the target formation.
-        delta: commanded displacement of agent 2 from agent 1 in the first phase, metres; None where there is none.
+
+    Attributes:
+        graph: the condition on the sensing graph that the factory declares, of the paper's kind where it says nothing.
 
     Raises:
-        InputError: any mistake in the file, the names or the law.
+        InputError: any mistake in the file or the names.
     """
-    module = file.execute()
-    make = getattr(module, factory, None)
-    if not callable(make):
-        names = _factories(module)
-        known = did_you_mean(factory, names) if names else "it has none at all"
-        raise InputError(f"{scenario}: law.factory: {file.path} has no function or class {factory!r}, {known}")
-    _check_parameters(scenario, factory, make, parameters)
-    try:
-        raw = make(target, **parameters)
-    except (Exception, SystemExit) as error:
-        arguments = ", ".join(["target", *(f"{name}={value:g}" for name, value in parameters.items())])
-        raise file.failure(f"{factory}({arguments})", error) from error
-    return OwnLaw(file, raw, target, None if delta is None else np.array(delta))
+
+    def __init__(self, scenario: str, file: LawFile, name: str, parameters: Mapping[str, float]) -> None:
+        module = file.execute()
+        make = getattr(module, name, None)
+        if not callable(make):
+            names = _factories(module)
+            known = did_you_mean(name, names) if names else "it has none at all"
+            raise InputError(f"{scenario}: law.factory: {file.path} has no function or class {name!r}, {known}")
+        check_parameters(scenario, name, make, parameters)
+        self.graph = str(getattr(make, "graph", LEADER_FIRST_FOLLOWER))
+        self._file, self._name, self._make, self._parameters = file, name, make, parameters
+
+    def make(self, target: Framework, delta: tuple[float, float] | None) -> OwnLaw:
+        """Call the factory once as ``factory(target, **parameters)``, and try the law that it makes.
+
+        Args:
+            target: the target formation.
+            delta: commanded displacement of agent 2 from agent 1 in the first phase, metres; None where there is none.
+
+        Raises:
+            InputError: any mistake in the factory or the law.
+        """
+        try:
+            raw = self._make(target, **self._parameters)
+        except (Exception, SystemExit) as error:
+            arguments = ", ".join(["target", *(f"{name}={value:g}" for name, value in self._parameters.items())])
+            raise self._file.failure(f"{self._name}({arguments})", error) from error
+        return OwnLaw(self._file, raw, target, None if delta is None else np.array(delta))
 
 
 def _factories(module: ModuleType) -> list[str]:
@@ -148,7 +178,7 @@ def _factories(module: ModuleType) -> list[str]:
     ]
 
 
-def _check_parameters(scenario: str, factory: str, make: Callable[..., Any], given: Mapping[str, float]) -> None:
+def check_parameters(scenario: str, factory: str, make: Callable[..., Any], given: Mapping[str, float]) -> None:
     """Refuse misspelt and missing parameters by the name that the scenario gives them."""
     try:
         takes = list(inspect.signature(make).parameters.values())[1:]

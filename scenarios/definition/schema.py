@@ -21,6 +21,7 @@ from scenarios.definition.bounds import (
 Number = Annotated[float, Field(strict=True, ge=-LARGEST, le=LARGEST, allow_inf_nan=False)]
 Positive = Annotated[float, Field(strict=True, ge=SMALLEST, le=LARGEST, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(strict=True, ge=0.0, le=LARGEST, allow_inf_nan=False)]
+Probability = Annotated[float, Field(strict=True, ge=0.0, le=1.0, allow_inf_nan=False)]
 AgentNumber = Annotated[int, Field(strict=True, ge=1, le=MOST_AGENTS)]
 Flag = Annotated[bool, Field(strict=True)]
 Vector = tuple[Number, Number]
@@ -42,7 +43,8 @@ class AgentTable(Table):
     id: AgentNumber
     """Its number: 1 is the leader, 2 the first follower."""
     neighbours: tuple[AgentNumber, ...] = ()
-    """Numbers of the agents that it senses: none for 1, [1] for 2, two smaller numbers for all others."""
+    """Numbers of the agents that it senses: none for 1, [1] for 2, two smaller numbers for all others; as the law
+    needs for a law with another graph."""
     start: Vector | None = None
     """Initial position of its projected point, m."""
     heading_deg: Number | None = None
@@ -77,8 +79,18 @@ class PhaseTable(Table):
 class LawTable(Table):
     """The formation law."""
 
-    name: Literal["angle", "displacement", "bearing", "distance", "own"] = "angle"
-    """The paper's law, one of the families that it weighs itself against, or an own law, whose file is executed."""
+    name: Literal[
+        "angle",
+        "displacement",
+        "displacement-undirected",
+        "bearing",
+        "bearing-undirected",
+        "distance",
+        "distance-undirected",
+        "own",
+    ] = "angle"
+    """The paper's law, one of those that it weighs itself against (docs/laws.md), or an own law, whose file is
+    executed."""
     first_follower: Literal["stationary", "displacement", "distance", "bearing"] = "stationary"
     """What the first follower of the angle law does with the phases' displacement."""
     activation: Literal["simultaneous", "sequential"] = "simultaneous"
@@ -144,6 +156,17 @@ class SensorTable(Table):
     """Standard deviation of each coordinate of a measured relative position, drawn each control period."""
     bearing_noise_deg: NotNegative = 0.0
     """Standard deviation of a rotation of a measurement about its observer, drawn each control period."""
+    distance_noise_m: NotNegative = 0.0
+    """Standard deviation of a measured distance, for laws that measure distances."""
+    angle_noise_deg: NotNegative = 0.0
+    """Standard deviation of a measured angle between two neighbours, for laws that measure angles."""
+    ratio_noise: NotNegative = 0.0
+    """Standard deviation of a measured ratio of distances, as a fraction of it, for laws that measure ratios."""
+    edge_loss: Probability = 0.0
+    """Probability that an edge gives no measurement during a control period, each by itself. A robot whose law needs
+    what is missing holds still."""
+    dropout: Probability = 0.0
+    """Probability that a robot measures nothing during a control period."""
     compass_bias_deg: NotNegative = 0.0
     """Standard deviation of each robot's constant compass error."""
     delay_periods: Annotated[int, Field(strict=True, ge=0, le=LONGEST_RUN)] = 0
@@ -226,6 +249,8 @@ class Scenario(Table):
     random_start: RandomStartTable | None = None
     """In place of the agents' own `start`."""
     target: TargetTable = TargetTable()
+    graph: Literal["given", "design"] = "given"
+    """Who senses whom: as the agents' neighbours say, or the kind that the law needs, built from the target."""
     law: LawTable = LawTable()
     phases: Annotated[tuple[PhaseTable, ...], Field(max_length=LONGEST_RUN)] = ()
     velocity_known_by: Literal["all", "leader"] = "all"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from formation import TargetFormation, agents, end_similarity
+from formation import Framework, agents, end_similarity
 from robots import GTERNAL, Arena
 from robots.obstacles import Obstacle
 from scenarios.definition.schema import RandomStartTable, Scenario
@@ -70,7 +70,7 @@ class Starts:
         return points
 
 
-def build_starts(path: str, scenario: Scenario, target: TargetFormation, arena: Arena) -> Starts:
+def build_starts(path: str, scenario: Scenario, formation: Framework, arena: Arena) -> Starts:
     """The starts of a scenario.
 
     Raises:
@@ -78,7 +78,7 @@ def build_starts(path: str, scenario: Scenario, target: TargetFormation, arena: 
     """
     ordered = in_order(scenario.agents)
     degrees = [np.nan if agent.heading_deg is None else agent.heading_deg for agent in ordered]
-    headings = np.radians(degrees) if ordered else np.full(target.graph.n, np.nan)
+    headings = np.radians(degrees) if ordered else np.full(formation.graph.n, np.nan)
     random = scenario.random_start
     if random is not None:
         for axis, (low, high) in (("x_m", random.x_m), ("y_m", random.y_m)):
@@ -100,5 +100,5 @@ def build_starts(path: str, scenario: Scenario, target: TargetFormation, arena: 
                 )
     points = np.array([agent.start for agent in ordered])
     with located(path, "agents[id 2].start"):
-        end_similarity(target, points[agents.LEADER], points[agents.FIRST_FOLLOWER])
+        end_similarity(formation, points[agents.LEADER], points[agents.FIRST_FOLLOWER])
     return Starts(path, points, headings, None)

@@ -7,7 +7,16 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 
-from formation import AngleSet, SensingGraph, TargetFormation, agents, random_target, target_from_angles, wrap
+from formation import (
+    AngleSet,
+    Framework,
+    SensingGraph,
+    TargetFormation,
+    agents,
+    random_target,
+    target_from_angles,
+    wrap,
+)
 from scenarios.definition.schema import AgentTable, RandomFormationTable, Scenario
 from scenarios.errors import InputError, located
 
@@ -40,10 +49,20 @@ def build_target(path: str, scenario: Scenario) -> tuple[TargetFormation, AngleS
         else:
             with located(path, "agents"):
                 target = TargetFormation(graph, np.array([agent.target for agent in in_order(scenario.agents)]))
-    angles = _listed(path, scenario, target.graph.n) or AngleSet.of_followers(target.graph)
-    exact = angles.measure(target.positions)
-    _compare(path, scenario, exact)
-    return target, angles, exact
+    angles = listed_angles(path, scenario, target) or AngleSet.of_followers(target.graph)
+    return target, angles, angles.measure(target.positions)
+
+
+def listed_angles(path: str, scenario: Scenario, formation: Framework) -> AngleSet | None:
+    """The angles that the scenario lists; None if it lists none.
+
+    Raises:
+        InputError: an angle that names no agents, or another value than the positions have.
+    """
+    angles = _listed(path, scenario, formation.graph.n)
+    if angles is not None:
+        _compare(path, scenario, angles.measure(formation.positions))
+    return angles
 
 
 def in_order(given: tuple[AgentTable, ...]) -> list[AgentTable]:

@@ -61,7 +61,7 @@ def _legend(experiment: Experiment, rates: Real) -> list[Line2D]:
     if (slowest := _slowest(experiment)) is not None:
         handles.append(Line2D([], [], color=INK, linewidth=0.8, linestyle=":", label=f"late, {slowest:.2f} /s"))
     if len(rates) <= MANY:
-        for row, rate in zip(experiment.graph.followers.tolist(), rates.tolist(), strict=True):
+        for row, rate in zip(experiment.target.graph.followers.tolist(), rates.tolist(), strict=True):
             text = f"agent {agents.number(row)}, {rate:.2f} /s"
             handles.append(Line2D([], [], color=agent_colour(row), linewidth=1.4, label=text))
     return handles
@@ -89,7 +89,7 @@ def places(experiment: Experiment, trajectory: Trajectory, index: int) -> Real:
     """
     rows = _rows(trajectory, index)
     leader, first = trajectory.points[rows[-1], : agents.FIRST_ORDINARY]
-    end = end_configuration(experiment.target, leader, first)
+    end = end_configuration(experiment.formation, leader, first)
     ahead = (trajectory.t[rows[-1]] - trajectory.t[rows])[:, None] * np.array(experiment.phases[index].velocity)
     return end - ahead[:, None, :]
 
@@ -98,7 +98,7 @@ def _draw_phase(axes: Axes, experiment: Experiment, trajectory: Trajectory, inde
     rows = _rows(trajectory, index)
     t = trajectory.t[rows] - trajectory.t[rows[0]]
     distances = np.linalg.norm(trajectory.points[rows] - places(experiment, trajectory, index), axis=-1)
-    for row, rate in zip(experiment.graph.followers.tolist(), rates.tolist(), strict=True):
+    for row, rate in zip(experiment.target.graph.followers.tolist(), rates.tolist(), strict=True):
         axes.semilogy(t, distances[:, row], color=agent_colour(row), linewidth=0.9, label=f"measured {row}")
         predicted = distances[0, row] * np.exp(-rate * t)
         axes.semilogy(t, predicted, color=agent_colour(row), linewidth=0.6, linestyle=DASHED, label=f"predicted {row}")

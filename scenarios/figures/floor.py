@@ -9,7 +9,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.patches import Polygon, Rectangle
 from numpy.typing import NDArray
 
-from formation import SensingGraph
+from formation import Graph
 from robots import Arena, Chassis
 from scenarios.definition.experiment import Experiment
 from scenarios.figures.palette import FAINT, INK, agent_colour
@@ -57,7 +57,7 @@ def draw_trails(axes: Axes, trajectory: Trajectory, width: float = 0.7) -> None:
         axes.plot(x, y, color=agent_colour(row), linewidth=width, alpha=0.75, zorder=2, label=f"trail {row}")
 
 
-def draw_edges(axes: Axes, graph: SensingGraph, points: Real, colour: str = FAINT) -> None:
+def draw_edges(axes: Axes, graph: Graph, points: Real, colour: str = FAINT) -> None:
     """The formation graph's edges between points (n, 2): sensed ones solid, the added ones dashed."""
     segments = points[graph.formation_edges]
     sensed = len(graph.edges)

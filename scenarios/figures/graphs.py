@@ -33,7 +33,7 @@ def graph(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> F
     figure = sheet(2.16)
     left = panel(figure, 0.06, 0.50, SIDE, SIDE)
     right = panel(figure, COLUMN - 0.08 - SIDE, 0.50, SIDE, SIDE)
-    positions = experiment.target.positions
+    positions = experiment.formation.positions
     size = _node_size(positions)
     width = 0.7 if experiment.n <= MANY else 0.3
     for axes in (left, right):

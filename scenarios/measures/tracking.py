@@ -40,7 +40,7 @@ class Tracking:
 def predicted_ends(experiment: Experiment, start: Real) -> Real:
     """(P, n, 2) the end configuration of each phase that the theory predicts from a start (n, 2), metres."""
     pairs = pair_ends(start[: agents.FIRST_ORDINARY], experiment.phases, experiment.first_follower)
-    return np.stack([end_configuration(experiment.target, leader, first) for leader, first in pairs])
+    return np.stack([end_configuration(experiment.formation, leader, first) for leader, first in pairs])
 
 
 def reference(experiment: Experiment, trajectory: Trajectory) -> Real:
@@ -60,8 +60,8 @@ def moving_ends(experiment: Experiment, start: Real, t: Real, phase: NDArray[np.
 def track(experiment: Experiment, trajectory: Trajectory) -> Tracking:
     """The tracking errors of a single run."""
     wanted = reference(experiment, trajectory)
-    scale, angle, centroid = fit_similarity(experiment.target, trajectory.points)
-    scale_0, angle_0, centroid_0 = fit_similarity(experiment.target, wanted)
+    scale, angle, centroid = fit_similarity(experiment.formation, trajectory.points)
+    scale_0, angle_0, centroid_0 = fit_similarity(experiment.formation, wanted)
     return Tracking(
         scale=scale / scale_0 - 1.0,
         orientation=wrap(angle - angle_0),
@@ -93,7 +93,7 @@ def measured_late_rates(experiment: Experiment, trajectory: Trajectory) -> list[
     if (leader == first).all() or not np.isfinite(points).all():
         return [None] * (experiment.n - agents.FIRST_ORDINARY)
     velocity = np.array(experiment.phases[trajectory.phase[-1]].velocity)
-    places = end_configuration(experiment.target, leader, first) - ((t[-1] - t)[:, None] * velocity)[:, None, :]
+    places = end_configuration(experiment.formation, leader, first) - ((t[-1] - t)[:, None] * velocity)[:, None, :]
     distances = np.linalg.norm(points - places, axis=-1)[:, agents.FIRST_ORDINARY :]
     return [_late_rate(t, distance) for distance in distances.T]
 

@@ -8,7 +8,7 @@ import numpy as np
 from rich.console import Console
 from rich.markup import escape
 
-from formation import agents, collision_margins, decay_rates, end_similarity
+from formation import agents, collision_margins, decay_rates, end_similarity, needs
 from scenarios.definition.experiment import Experiment
 from scenarios.documents import cell
 from scenarios.measures.forecast import NEAR, PhaseForecast, forecast
@@ -26,7 +26,8 @@ def print_experiment(console: Console, experiment: Experiment, seed: int) -> Non
     start = experiment.initial_points(seed)
     predicted = forecast(experiment, start)
     _print_assumptions(console, experiment, start)
-    _print_agents(console, experiment, start, predicted[-1].end)
+    if experiment.formation is experiment.aim.target:
+        _print_agents(console, experiment, start, predicted[-1].end)
     if experiment.predicted:
         _print_forecast(console, experiment, predicted)
         for misfit in misfits(experiment, start):
@@ -41,12 +42,16 @@ def print_experiment(console: Console, experiment: Experiment, seed: int) -> Non
 
 
 def _print_assumptions(console: Console, experiment: Experiment, start: Any) -> None:
-    graph, target = experiment.graph, experiment.target
+    distance = float(np.linalg.norm(start[agents.FIRST_FOLLOWER] - start[agents.LEADER]))
+    console.print("\n[bold]Assumptions[/bold]")
+    if experiment.formation is not experiment.aim.target:
+        _print_graph(console, experiment, start)
+        return
+    target = experiment.target
+    graph = target.graph
     sine = np.abs(np.sin(target.follower_angles))
     worst = int(sine.argmin())
     flattest = tuple(agents.numbers(graph.triangles[worst]).tolist())
-    distance = float(np.linalg.norm(start[agents.FIRST_FOLLOWER] - start[agents.LEADER]))
-    console.print("\n[bold]Assumptions[/bold]")
     console.print(
         f"  1  leader-first-follower sensing graph: holds, {graph.n} agents, {len(graph.edges)} edges, "
         f"depth {graph.depth.max()}"
@@ -58,8 +63,21 @@ def _print_assumptions(console: Console, experiment: Experiment, start: Any) -> 
     console.print(f"  p_1(0) != p_2(0): holds, {distance:.3f} m apart\n")
 
 
+def _print_graph(console: Console, experiment: Experiment, start: Any) -> None:
+    """The sensing graph of a law that needs another kind than the paper's."""
+    graph, condition = experiment.graph, needs(experiment.law).graph
+    origin = "as given" if experiment.scenario.graph == "given" else "designed from the target"
+    console.print(f"  {condition} sensing graph: holds, {graph.n} agents, {len(graph.edges)} edges, {origin}\n")
+    table = new_table("agent", "senses", "start (m)")
+    for row in range(graph.n):
+        senses = [str(agents.number(i)) for k, i in graph.edges if k == row]
+        table.add_row(str(agents.number(row)), ", ".join(senses) or "-", place(start[row]))
+    console.print(table)
+
+
 def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any) -> None:
-    graph, target = experiment.graph, experiment.target
+    target = experiment.target
+    graph = target.graph
     rates, late = decay_rates(target), predicted_late_rates(experiment)
     margins = collision_margins(target, start, end)
     at_rest = len(experiment.phases) == 1 and not any(experiment.phases[0].velocity)
@@ -115,7 +133,7 @@ def _print_forecast(console: Console, experiment: Experiment, predicted: list[Ph
     until = 0.0
     for phase, ahead in zip(experiment.phases, predicted, strict=True):
         until += phase.duration
-        similarity = end_similarity(experiment.target, *ahead.end[: agents.FIRST_ORDINARY])
+        similarity = end_similarity(experiment.formation, *ahead.end[: agents.FIRST_ORDINARY])
         table.add_row(
             escape(phase.name),
             f"{until:g}",

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from formation import Phase, SequentialActivation
-from robots.sensors import disturb
+from robots.instruments import Disturbance
 from scenarios.definition.experiment import Experiment
 from scenarios.simulation.guard import make_guard
 
@@ -20,7 +20,7 @@ Complex = NDArray[np.complex128]
 class Controller:
     """The formation law as the robots run it: body-frame velocities of the projected points from what they sense.
 
-    A law gets relative positions in body frames and, only if it says that it needs one, a compass. It never sees a
+    A law gets the measurements that it declares, in body frames, and a compass only if it declares one. It never sees a
     position or a heading. The common velocity v_r is stated in the common frame, so following it takes a compass too.
 
     Attributes:
@@ -30,11 +30,12 @@ class Controller:
 
     def __init__(self, experiment: Experiment, generators: Sequence[np.random.Generator], batch: tuple[int, ...]):
         self._law = experiment.law
-        self._sensor = experiment.sensor
+        self._instruments = experiment.instruments
+        self._observer = experiment.graph.edges[:, 0]
         self._estimator = experiment.estimator
         self._generators = generators
         self._batch = batch
-        self._noise: tuple[Real, Real] | None = None
+        self._disturbance: Disturbance | None = None
         self._commanded = np.zeros(2)
         self._velocity: Real | None = None
         self._delta: Real | None = None
@@ -62,12 +63,11 @@ class Controller:
         """Do what happens once per control period: draw noise, exchange estimates of v_r, activate followers."""
         self._history.append((points, headings))
         points, headings = self._sensed(points, headings)
-        noise = [self._sensor.noise(rng) for rng in self._generators]
-        if noise[0] is not None:
-            turn, offset = (np.stack(part).reshape(*self._batch, -1, 2) for part in zip(*noise, strict=True))
-            self._noise = turn, offset
+        draws = [draw for rng in self._generators if (draw := self._instruments.draw(rng)) is not None]
+        self._disturbance = Disturbance.stack(draws, self._batch) if draws else None
         if self.guard is not None:
-            self.guard.begin_period(self._generators, self._batch, self._noise, period)
+            noise = None if self._disturbance is None else self._disturbance.relative
+            self.guard.begin_period(self._generators, self._batch, noise, period)
         if self._estimator is not None and self._velocity is not None:
             self._velocity = self._estimator.step(self._velocity, self._commanded, period)
         if self._activation is not None:
@@ -90,9 +90,18 @@ class Controller:
 
     def _feedback(self, points: Real, headings: Real) -> Real:
         """The law's own velocities, without v_r."""
-        relative = disturb(self._sensor.measure(points, headings), self._noise)
+        disturbance = self._disturbance
+        measured = self._instruments.deliver(self._instruments.measure(points, headings), disturbance)
         compass = self._compass(headings).view(np.float64) if self._law.needs_compass else None
-        return self._law(relative, compass, self._delta)
+        feedback = self._law(*measured, compass, self._delta)
+        if disturbance is not None and disturbance.lost is not None:
+            self._hold_still(feedback, disturbance.lost)
+        return feedback
+
+    def _hold_still(self, feedback: Real, lost: NDArray[np.bool_]) -> None:
+        """An agent whose law gives no number because edges (..., m) are lost does not move."""
+        blind = lost @ (self._observer[:, None] == np.arange(feedback.shape[-2]))
+        feedback[blind & np.isnan(feedback).any(axis=-1)] = 0.0
 
     def _compass(self, headings: Real) -> Complex:
         """(..., n, 1) the common x axis in each body frame as a complex number, as each robot's compass shows it."""

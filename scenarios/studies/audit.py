@@ -43,7 +43,7 @@ def audit_scenario(
     """
     experiment = open_experiment(source, changes)
     law = experiment.law.raw if isinstance(experiment.law, OwnLaw) else experiment.law  # itself, with all its faults
-    subject = Subject(law, experiment.target, experiment.phases[0].delta)
+    subject = Subject(law, experiment.formation, experiment.phases[0].delta)
     findings = audit(subject, experiment.scenario.plant.control_period_s)
     findings.append(_start_speed(experiment))
     biases = [0.0, COMPASS_BIAS_DEG] if experiment.law.needs_compass else [0.0]
@@ -61,7 +61,7 @@ def passed(findings: Sequence[Finding]) -> bool:
 def _start_speed(experiment: Experiment) -> Finding:
     """The greatest velocity, v_r included, that the law asks for at the start, beside what the wheels can do."""
     phase, limit = experiment.phases[0], experiment.robot.drive.speed_limit
-    subject = Subject(experiment.law, experiment.target, phase.delta)
+    subject = Subject(experiment.law, experiment.formation, phase.delta)
     speed = np.linalg.norm(subject(experiment.initial_points(0)) + phase.velocity, axis=1)
     fastest = int(speed.argmax())
     remark = f"{agents.name(fastest)}; the wheels do {limit:g} m/s{': cut' if speed[fastest] > limit else ''}"

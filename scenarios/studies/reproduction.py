@@ -68,7 +68,7 @@ Results = dict[Trial, dict[str, Any]]
 
 def trials() -> list[Trial]:
     """Both experiments and each follower by itself, on every plant."""
-    followers = agents.numbers(open_experiment(SHAPE).graph.followers).tolist()
+    followers = agents.numbers(open_experiment(SHAPE).target.graph.followers).tolist()
     own = [Trial(scenario, plant) for scenario in (MANEUVER, SHAPE) for plant in PLANTS]
     return own + [Trial(SHAPE, plant, follower) for follower in followers for plant in PLANTS]
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formation import AngleLaw, ComparisonLaw, SensingGraph, TargetFormation, random_target
+from formation import LAWS, AngleLaw, SensingGraph, TargetFormation, random_target
 from formation.audit import Finding, Subject, audit
 
 Real = np.ndarray
@@ -61,9 +61,9 @@ def test_every_built_in_law_passes_on_every_target_and_fixes_what_theory_says(se
         (AngleLaw(target, "displacement"), DISPLACEMENT, "shape, scale and orientation;"),
         (AngleLaw(target, "distance"), DISPLACEMENT, "shape and scale;"),
         (AngleLaw(target, "bearing"), DISPLACEMENT, "shape and orientation;"),
-        (ComparisonLaw(target, "displacement"), None, "shape, scale and orientation;"),
-        (ComparisonLaw(target, "distance"), None, "shape and scale;"),
-        (ComparisonLaw(target, "bearing"), None, "shape and orientation;"),
+        (LAWS["displacement"](target), None, "shape, scale and orientation;"),
+        (LAWS["distance"](target), None, "shape and scale;"),
+        (LAWS["bearing"](target), None, "shape and orientation;"),
     ]
     for law, delta, fixes in laws:
         found = {f.check: f for f in audit(Subject(law, target, delta), 1e-6)}  # type: ignore[arg-type]
@@ -73,8 +73,8 @@ def test_every_built_in_law_passes_on_every_target_and_fixes_what_theory_says(se
 
 
 def test_only_the_distance_law_needs_no_common_sense_of_rotation_and_rests_in_the_mirror_image() -> None:
-    for law in (AngleLaw(TARGET), ComparisonLaw(TARGET, "distance"), ComparisonLaw(TARGET, "bearing")):
-        found, free = findings(law), isinstance(law, ComparisonLaw) and not law.needs_compass
+    for law in (AngleLaw(TARGET), LAWS["distance"](TARGET), LAWS["bearing"](TARGET)):
+        found, free = findings(law), not isinstance(law, AngleLaw) and not law.needs_compass
         assert found["mirrored frames"].remark.startswith("no common") == free
         assert found["mirror image"].remark.startswith("at rest") == free
 

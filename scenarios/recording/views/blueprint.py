@@ -160,7 +160,7 @@ def spans(experiment: Experiment, points: Real) -> dict[str, Span]:
     states = points.reshape(-1, experiment.n, 2)
     ends = predicted_ends(experiment, states[0])
     seen = states[np.isfinite(states).all(axis=(1, 2))]
-    scale, angle, _ = fit_similarity(experiment.target, np.concatenate([seen, ends]))
+    scale, angle, _ = fit_similarity(experiment.formation, np.concatenate([seen, ends]))
     largest = min(scale.max(), 3.0 * max(scale[0], scale[-len(ends) :].max()))
     quarters = np.degrees(wrap(angle)) / 90.0
     low, high = np.floor(quarters.min()), np.ceil(quarters.max())

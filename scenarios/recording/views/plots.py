@@ -88,8 +88,8 @@ def tracking(recorder: Recorder, piece: Piece) -> None:
     """
     experiment, points = piece.experiment, piece.trajectory.points
     wanted = moving_ends(experiment, piece.start, piece.t, piece.trajectory.phase)
-    scale, angle, centroid = fit_similarity(experiment.target, points)
-    scale_0, angle_0, centroid_0 = fit_similarity(experiment.target, wanted)
+    scale, angle, centroid = fit_similarity(experiment.formation, points)
+    scale_0, angle_0, centroid_0 = fit_similarity(experiment.formation, wanted)
     angle_0 = wrap(angle_0)
     for entity, measured, predicted in (
         (SCALE, scale, scale_0),

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from scenarios.definition.experiment import open_experiment
-from scenarios.errors import InputError
 from scenarios.measures.metrics import measure
 from scenarios.simulation.loop import simulate
 from scenarios.studies import laws
@@ -40,11 +39,6 @@ def test_a_comparison_law_ends_where_its_prediction_says(law: str) -> None:
     np.testing.assert_allclose(metrics.phases[-1].distances, 0.0, atol=1e-5)
 
 
-def test_a_comparison_law_takes_no_displacement_from_a_phase() -> None:
-    with pytest.raises(InputError, match=r"phases\.displacement_m: the bearing law takes its own"):
-        open_experiment("maneuver", ("law.name=bearing",))
-
-
 def test_a_share_does_not_depend_on_how_many_runs_advance_together(monkeypatch: pytest.MonkeyPatch) -> None:
     changes = ("law.name=distance", "plant.name=single_integrator", *RANDOM_START, "goal.angle_error_sum_rad=8.0")
     experiment = open_experiment("law-displacement", changes, 6.0)
@@ -58,3 +52,13 @@ def test_a_share_does_not_depend_on_how_many_runs_advance_together(monkeypatch: 
     half = len(parts) // 4
     assert parts[half - 1] == parts[-1] == 1.0  # one batch, then three
     assert parts[half:] == sorted(parts[half:])
+
+
+@pytest.mark.parametrize(("law", "scale", "turn"), [("displacement", 0.7, -1.0), ("bearing", 1.0, -1.0)])
+def test_a_comparison_law_follows_what_it_can_of_a_maneuver(law: str, scale: float, turn: float) -> None:
+    """A quarter turn to the right and a smaller formation, of a displacement that the phases command."""
+    changes = ("plant.name=single_integrator", f"law.name={law}", "phases.3.duration_s=200")
+    trajectory = simulate(open_experiment("maneuver", changes), 0)
+    before, after = (trajectory.points[trajectory.phase <= last][-1] for last in (0, 2))
+    e_before, e_after = (complex(*(p[1] - p[0])) for p in (before, after))
+    assert e_after / e_before == pytest.approx(scale * np.exp(0.5j * np.pi * turn), abs=1e-3)
