@@ -89,5 +89,5 @@ def test_perfect_instruments_draw_nothing() -> None:
 
 
 def test_an_unknown_kind_is_refused() -> None:
-    with pytest.raises(ValueError, match="measures must be among relative position, .*, got 'smell'"):
+    with pytest.raises(ValueError, match=r"measures must be among relative position, .*, got 'smell'"):
         instruments("smell")
