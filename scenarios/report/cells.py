@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-NO_PREDICTION = (
-    "no closed-form prediction for an own law or a leaderless one: `formation audit` measures what it does"
-)
+NO_PREDICTION = "no closed-form prediction for an own law or a leaderless one: `formation audit` measures what it does"
 """What stands where the theory speaks of the other laws."""
 
 ROUNDED = 5e-5
