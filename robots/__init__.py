@@ -27,6 +27,8 @@ __all__ = [
     "Chassis",
     "DifferentialDrive",
     "GTERNAL",
+    "Imperfections",
+    "Instruments",
     "NearIdentityDiffeomorphism",
     "PLANTS",
     "ROBOTARIUM_FLOOR",

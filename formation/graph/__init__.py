@@ -1,3 +1,3 @@
 """Who senses whom, and the conditions on it that laws name. Knows no place and no angle."""
 
-__all__ = ["sensing"]
+__all__ = ["conditions", "designs", "directed", "edges", "sensing"]

@@ -3,4 +3,17 @@
 Nothing here moves a robot.
 """
 
-__all__ = ["bounds", "experiment", "keys", "law_file", "load", "own_law", "reading", "schema", "starts", "targets"]
+__all__ = [
+    "bounds",
+    "digest",
+    "experiment",
+    "formations",
+    "keys",
+    "law_file",
+    "load",
+    "own_law",
+    "reading",
+    "schema",
+    "starts",
+    "targets",
+]

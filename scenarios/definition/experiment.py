@@ -1,5 +1,7 @@
 """From a validated scenario to the objects of the theory and of the machines."""
 
+# Longer than 300 lines: every part of an experiment is made here, from one scenario, in one order.
+
 from __future__ import annotations
 
 from dataclasses import dataclass, replace

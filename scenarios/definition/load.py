@@ -2,38 +2,23 @@
 
 from __future__ import annotations
 
-import copy
-import hashlib
-import json
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast, get_args
+from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
 from scenarios.definition import law_file
 from scenarios.definition.bounds import LARGEST_INTEGER
+from scenarios.definition.digest import OWN_LAW_KEYS, digest
 from scenarios.definition.law_file import LawFile
 from scenarios.definition.reading import read_regular
 from scenarios.definition.schema import LawTable, Scenario
 from scenarios.errors import InputError, did_you_mean, plain
 
 LIBRARY = Path(__file__).parents[1] / "library"
-
-OWN_LAW_KEYS = ("file", "factory", "parameters")
-"""Keys of the table ``law`` that only an own law has."""
-
-LATER_KEYS = (
-    ("graph",),
-    ("sensor", "distance_noise_m"),
-    ("sensor", "angle_noise_deg"),
-    ("sensor", "ratio_noise"),
-    ("sensor", "edge_loss"),
-    ("sensor", "dropout"),
-)
-"""Keys that came after the first baselines: at their defaults they are not in a scenario's digest."""
 
 LONGEST_VALUE = 80
 """Characters of a refused value that a message repeats."""
@@ -64,30 +49,6 @@ class ScenarioFile:
         Of an own law its source counts, wherever its file is.
         """
         return digest(self.scenario.model_dump(mode="json"), self.law)
-
-
-def digest(content: Mapping[str, Any], own_law: LawFile | None) -> str:
-    """Digest of a validated scenario's content as JSON has it; see :attr:`ScenarioFile.sha256`."""
-    data = copy.deepcopy(dict(content))
-    without_later_keys(data)
-    law = data.setdefault("law", {})
-    if own_law is not None:
-        law["file"] = own_law.sha256
-    else:
-        for key in OWN_LAW_KEYS:
-            law.pop(key, None)
-    return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
-
-
-def without_later_keys(data: dict[str, Any]) -> None:
-    """Take the keys of :data:`LATER_KEYS` that have their defaults out of a scenario's dumped ``data``."""
-    for *tables, key in LATER_KEYS:
-        place: Any = data
-        model: type[BaseModel] = Scenario
-        for table in tables:
-            place, model = place.get(table, {}), cast(type[BaseModel], model.model_fields[table].annotation)
-        if key in place and place[key] == model.model_fields[key].default:
-            del place[key]
 
 
 def library() -> list[str]:

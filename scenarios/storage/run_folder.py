@@ -205,7 +205,8 @@ def _read_scenario(folder: Path, result: Result) -> ScenarioFile:
         InputError: it cannot be used, or is another one.
     """
     from scenarios.definition import law_file
-    from scenarios.definition.load import ScenarioFile, digest, validate
+    from scenarios.definition.digest import digest
+    from scenarios.definition.load import ScenarioFile, validate
 
     path = folder / SCENARIO
     content = read_json(path)
