@@ -17,6 +17,7 @@ OWN_LAW_KEYS = ("file", "factory", "parameters")
 """Keys of the table ``law`` that only an own law has."""
 
 LATER_KEYS = (
+    ("goal", "accepted"),
     ("graph",),
     ("sensor", "distance_noise_m"),
     ("sensor", "angle_noise_deg"),

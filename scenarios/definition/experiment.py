@@ -131,6 +131,12 @@ class Experiment:
         """Bound on the sum of the absolute angle errors, radians."""
         return self.scenario.goal.angle_error_sum_rad
 
+    @property
+    def noisy(self) -> bool:
+        """Whether measurements are drawn anew each period, so that a run is judged over a while and not by its end."""
+        sensor = self.scenario.sensor
+        return sensor.position_noise_m > 0.0 or sensor.bearing_noise_deg > 0.0
+
     @cached_property
     def first_follower(self) -> str:
         """The edge law by which agent 2 acts, a name of :data:`formation.EDGE_LAWS`.

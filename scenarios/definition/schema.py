@@ -231,7 +231,10 @@ class GoalTable(Table):
     """When a run has reached its goal."""
 
     angle_error_sum_rad: Positive = 0.01
-    """Bound on the sum of the absolute angle errors of the projected points."""
+    """Bound on the sum of the absolute angle errors of the projected points; where sensors are noisy, of the means of
+    the signed errors over the last 10 s."""
+    accepted: Flag = False
+    """Whether the testbed has to accept the run besides."""
 
 
 class Scenario(Table):

@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 from robots.testbed import Separation, Verdict, collision_centres, judge, separation
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.tracking import Tracking, measured_late_rates, predicted_ends, track
+from scenarios.measures.window import WINDOW, Window, trailing
 from scenarios.simulation.trajectory import Trajectory
 
 Real = NDArray[np.float64]
-Outcome = Literal["converged", "not_converged", "diverged"]
+Outcome = Literal["converged", "not_converged", "rejected", "diverged"]
+"""``rejected``: converged, by a goal that asks for the testbed's acceptance too, which refused."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +47,9 @@ class Metrics:
         angle_errors: (T, m) of the projected points, radians.
         error_sum: (T,) their absolute sum, the paper's ||e_1||.
         axle_error_sum: (T,) the same of the axle centres.
-        settling_time: seconds after which ``error_sum`` stays below the goal; None if it does not.
+        window: the errors over a trailing window; None where sensors are free of noise.
+        judged: (T,) what the goal bounds: ``error_sum``, or the absolute sum of the window's means.
+        settling_time: seconds after which ``judged`` stays below the goal; None if it does not.
         separation: of the collision centres.
         tracking: of scale, orientation and translation.
         late_rates: of the followers' distances, 1/s, as measured; None where there is too little to fit.
@@ -55,6 +59,8 @@ class Metrics:
     angle_errors: Real
     error_sum: Real
     axle_error_sum: Real
+    window: Window | None
+    judged: Real
     settling_time: float | None
     separation: Separation
     verdict: Verdict
@@ -74,20 +80,34 @@ def measure(experiment: Experiment, trajectory: Trajectory) -> Metrics:
     axle_sum = np.abs(axle_errors).sum(axis=-1)
     tracking = track(experiment, trajectory)
     near = separation(collision_centres(trajectory.poses))
+    window = trailing(trajectory.t, errors) if experiment.noisy else None
+    judged = error_sum if window is None else np.abs(window.mean).sum(axis=-1)
+    verdict = judge(
+        trajectory.t, trajectory.poses, trajectory.wheel_speeds, experiment.arena, experiment.robot.drive, near
+    )
     return Metrics(
         angle_errors=errors,
         error_sum=error_sum,
         axle_error_sum=axle_sum,
-        settling_time=settling_time(trajectory.t, error_sum, experiment.goal),
+        window=window,
+        judged=judged,
+        settling_time=settling_time(trajectory.t, judged, experiment.goal),
         separation=near,
-        verdict=judge(
-            trajectory.t, trajectory.poses, trajectory.wheel_speeds, experiment.arena, experiment.robot.drive, near
-        ),
+        verdict=verdict,
         tracking=tracking,
         late_rates=measured_late_rates(experiment, trajectory),
         phases=_phase_ends(experiment, trajectory, errors, axle_errors, tracking),
-        outcome=_outcome(trajectory, error_sum, experiment.goal),
+        outcome=_outcome(experiment, trajectory, judged, verdict),
     )
+
+
+@np.errstate(over="ignore", invalid="ignore")  # a diverged run is an outcome, not a warning
+def judged_end(experiment: Experiment, trajectory: Trajectory) -> Real:
+    """(...) what the goal bounds at the end of a run, or of each run of a batch, radians."""
+    first = np.searchsorted(trajectory.t, trajectory.t[-1] - WINDOW) if experiment.noisy else -1
+    last = trajectory.between(int(first), len(trajectory.t))
+    errors = experiment.angles.errors(last.points, experiment.target_angles)
+    return np.abs(trailing(last.t, errors).mean[-1]).sum(axis=-1)
 
 
 def settling_time(t: Real, error_sum: Real, bound: float) -> float | None:
@@ -115,7 +135,9 @@ def _phase_ends(
     return tuple(ends)
 
 
-def _outcome(trajectory: Trajectory, error_sum: Real, goal: float) -> Outcome:
+def _outcome(experiment: Experiment, trajectory: Trajectory, judged: Real, verdict: Verdict) -> Outcome:
     if not np.isfinite(trajectory.poses[-1]).all():
         return "diverged"
-    return "converged" if error_sum[-1] < goal else "not_converged"
+    if not judged[-1] < experiment.goal:
+        return "not_converged"
+    return "rejected" if experiment.scenario.goal.accepted and not verdict.accepted else "converged"

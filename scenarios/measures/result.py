@@ -15,6 +15,7 @@ from scenarios.definition.experiment import Experiment
 from scenarios.measures.metrics import Metrics, PhaseEnd
 from scenarios.measures.safety_result import safety_result
 from scenarios.measures.tracking import Tracking, predicted_late_rates
+from scenarios.measures.window import WINDOW, Window
 from scenarios.simulation.trajectory import Trajectory
 from scenarios.storage.result_schema import SCHEMA_VERSION
 
@@ -27,7 +28,7 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
     """The content of ``result.json``."""
     final, axle_final = metrics.angle_errors[-1], _axle_errors(experiment, trajectory)
     closest = int(metrics.separation.distance.argmin())
-    return {
+    content: dict[str, Any] = {
         "schema_version": SCHEMA_VERSION,
         "scenario": experiment.file.name,
         "scenario_sha256": experiment.file.sha256,
@@ -84,6 +85,18 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
         ],
         **safety_result(experiment, trajectory),
     }
+    if metrics.window is not None:
+        _add_window(content, metrics.window)
+    return content
+
+
+def _add_window(content: dict[str, Any], window: Window) -> None:
+    """What a run with noisy sensors is judged by, beside what it would be judged by without noise."""
+    for angle, mean, rms in zip(content["angles"], window.mean[-1], window.rms[-1], strict=True):
+        angle |= {"mean_error_rad": _number(mean), "rms_error_rad": _number(rms)}
+    content["error_window_s"] = WINDOW
+    content["mean_angle_error_sum_rad"] = _number(np.abs(window.mean[-1]).sum())
+    content["rms_angle_error_sum_rad"] = _number(window.rms[-1].sum())
 
 
 def _against_prediction(experiment: Experiment, tracking: Tracking, end: PhaseEnd) -> dict[str, Any]:

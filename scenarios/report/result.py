@@ -10,7 +10,7 @@ from rich.markup import escape
 from formation import agents
 from scenarios.documents import cell
 from scenarios.report.cells import NO_PREDICTION, place
-from scenarios.terminal import new_table
+from scenarios.terminal import new_table, print_table
 
 
 def print_result(console: Console, result: dict[str, Any]) -> None:
@@ -35,6 +35,8 @@ def print_result(console: Console, result: dict[str, Any]) -> None:
     settled = result["settling_time_s"]
     settling = "never" if settled is None else f"after {settled:.1f} s"
     console.print(f"settled below {result['goal_rad']:g} rad: {settling}")
+    if "error_window_s" in result:
+        _print_window(console, result)
     near = result["min_separation"]
     if near["distance_m"] is not None:
         console.print(
@@ -49,6 +51,20 @@ def print_result(console: Console, result: dict[str, Any]) -> None:
     for violation in testbed["violations"]:
         console.print(f"  {_describe(violation)}")
     console.print(f"outcome: [bold]{result['outcome'].replace('_', ' ')}[/bold]")
+
+
+def _print_window(console: Console, result: dict[str, Any]) -> None:
+    """What a run with noisy sensors is judged by."""
+    length = result["error_window_s"]
+    console.print(f"sensors are noisy: judged by the mean of each signed error over the last {length:g} s")
+    table = new_table("angle", "mean error (rad)", "rms (rad)")
+    for angle in result["angles"]:
+        table.add_row(angle["name"], cell(angle["mean_error_rad"], "+.2e"), cell(angle["rms_error_rad"], ".2e"))
+    table.add_section()
+    mean, rms = result["mean_angle_error_sum_rad"], result["rms_angle_error_sum_rad"]
+    table.add_row("sum of |mean|, of rms", cell(mean, ".2e"), cell(rms, ".2e"), style="bold")
+    print_table(console, table)
+    console.print()
 
 
 def _print_phases(console: Console, result: dict[str, Any]) -> None:

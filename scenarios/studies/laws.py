@@ -12,6 +12,7 @@ from scenarios.definition.bounds import MOST_STARTS
 from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.documents import markdown_table
 from scenarios.errors import InputError
+from scenarios.measures.metrics import judged_end
 from scenarios.simulation.loop import count_periods, simulate
 from scenarios.terminal import new_table
 
@@ -115,11 +116,10 @@ def share_reaching(experiment: Experiment, starts: int, on_period: Progress) -> 
     reached = 0
     for first in range(0, starts, together):
         seeds = range(first, min(first + together, starts))
-        end = simulate(experiment, seeds, _share_of(on_period, first, len(seeds), starts)).points[-1]
-        if not np.isfinite(end).all():  # one that diverges ends a batch for all
-            end = np.stack([simulate(experiment, seed).points[-1] for seed in seeds])
-        error_sum = np.abs(experiment.angles.errors(end, experiment.target_angles)).sum(axis=-1)
-        reached += int((error_sum < experiment.goal).sum())
+        runs = [simulate(experiment, seeds, _share_of(on_period, first, len(seeds), starts))]
+        if not np.isfinite(runs[0].points[-1]).all():  # one that diverges ends a batch for all
+            runs = [simulate(experiment, seed) for seed in seeds]
+        reached += sum(int((judged_end(experiment, run) < experiment.goal).sum()) for run in runs)
     return reached / starts
 
 

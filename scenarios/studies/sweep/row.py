@@ -11,6 +11,7 @@ import numpy as np
 from scenarios.definition.experiment import Experiment, build
 from scenarios.errors import InputError
 from scenarios.measures.metrics import measure
+from scenarios.measures.window import Window
 from scenarios.simulation.loop import simulate
 from scenarios.simulation.trajectory import Trajectory
 from scenarios.studies.sweep.study import Batch
@@ -39,6 +40,10 @@ class Row:
     min_separation_m: float | None = None
     accepted: bool | None = None
     violations: str = ""
+    mean_angle_error_sum_rad: float | None = None
+    rms_angle_error_sum_rad: float | None = None
+    mean_errors_rad: str = ""
+    rms_errors_rad: str = ""
     message: str = ""
 
     def cells(self, varied: Sequence[str]) -> list[Any]:
@@ -94,7 +99,19 @@ def _row(experiment: Experiment, seed: int, trajectory: Trajectory) -> Row:
         min_separation_m=_finite(metrics.separation.distance.min()),
         accepted=metrics.verdict.accepted,
         violations=" ".join(violation.kind for violation in metrics.verdict.violations),
+        **({} if metrics.window is None else _over_window(metrics.window)),
     )
+
+
+def _over_window(window: Window) -> dict[str, Any]:
+    """The columns that only noisy sensors fill: sums over the angles, and each angle's own, in their order."""
+    mean, rms = window.mean[-1], window.rms[-1]
+    return {
+        "mean_angle_error_sum_rad": _finite(np.abs(mean).sum()),
+        "rms_angle_error_sum_rad": _finite(rms.sum()),
+        "mean_errors_rad": " ".join(map(repr, mean.tolist())),
+        "rms_errors_rad": " ".join(map(repr, rms.tolist())),
+    }
 
 
 def _failed(batch: Batch, seed: int, error: Exception) -> Row:

@@ -98,6 +98,20 @@ def test_a_sweep_prints_a_line_per_combination_and_a_whole_summary_where_nothing
     assert re.search(r"rows: runs/sweep-shape-pymunk-seeds0-1-\w{6}/rows.csv\n", answer.out)
 
 
+def test_a_rejected_run_misses_a_goal_that_asks_for_acceptance(cli: Cli) -> None:
+    rejected = ("run", "shape", "--plant", "saturated", "--safety", "none", "--no-recording")
+    assert cli(*rejected).code == DONE
+    answer = cli(*rejected, *sets("goal.accepted=true"))
+    assert (answer.code, answer.err) == (MISSED, "")
+    assert "outcome: rejected" in answer.out
+
+
+def test_a_run_with_noise_says_what_it_is_judged_by(cli: Cli) -> None:
+    answer = cli("run", "shape", "--duration", "1", *sets("sensor.position_noise_m=0.01"), "--no-recording")
+    assert "sensors are noisy: judged by the mean of each signed error over the last 10 s" in answer.out
+    assert "sensors are noisy" not in cli("run", "shape", "--duration", "1", "--no-recording").out
+
+
 def test_a_bare_command_and_help_print_the_commands(cli: Cli) -> None:
     for arguments in ((), ("--help",), ("-h",)):
         answer = cli(*arguments)

@@ -83,6 +83,11 @@ def test_a_misspelt_name_gets_the_nearest_or_all(name: str, expected: str) -> No
     assert did_you_mean(name, ["alpha", "shape"]) == expected
 
 
+def test_a_younger_key_changes_the_digest_only_where_it_is_given() -> None:
+    assert load("shape").sha256 == load("shape", ("goal.accepted=false",)).sha256
+    assert load("shape").sha256 != load("shape", ("goal.accepted=true",)).sha256
+
+
 LONG = "0x" + "f" * 6000
 """An integer that Python refuses to print."""
 

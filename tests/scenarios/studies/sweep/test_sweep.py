@@ -70,6 +70,30 @@ def test_a_row_is_what_a_run_of_its_seed_gives(plant: str, tmp_path: Path) -> No
         assert settled == pytest.approx(metrics.settling_time, abs=0.05)
 
 
+def test_a_row_of_noisy_sensors_has_the_mean_and_the_rms_of_every_angle(tmp_path: Path) -> None:
+    changes = (*SHORT, "plant.name=saturated", "sensor.position_noise_m=0.01")
+    sweep_shape(changes, "0:2", tmp_path / "noisy")
+    experiment = open_experiment("shape", changes)
+    for row in rows_in(tmp_path / "noisy" / ROWS):
+        window = measure(experiment, simulate(experiment, int(row["seed"]))).window
+        for kind, values in (("mean", window.mean[-1]), ("rms", window.rms[-1])):
+            found = [float(cell) for cell in row[f"{kind}_errors_rad"].split(" ")]
+            assert found == pytest.approx(values, abs=1e-9)
+            assert float(row[f"{kind}_angle_error_sum_rad"]) == pytest.approx(np.abs(values).sum(), abs=1e-9)
+    sweep_shape(SHORT, "0:2", tmp_path / "exact")
+    for row in rows_in(tmp_path / "exact" / ROWS):
+        assert not any(row[column] for column in row if column.startswith(("mean_", "rms_")))
+
+
+def test_rows_of_a_goal_that_asks_for_acceptance_count_a_rejected_run_as_missed(tmp_path: Path) -> None:
+    changes = ("plant.name=saturated", "safety.filter=none")
+    [converged] = sweep_shape(changes, "0:2", tmp_path / "not", vary=())
+    [rejected] = sweep_shape((*changes, "goal.accepted=true"), "0:2", tmp_path / "asked")
+    assert (converged.converged.share, converged.missed) == (1.0, ())
+    assert (rejected.converged.share, rejected.missed) == (0.0, (0, 1))
+    assert [row["outcome"] for row in rows_in(tmp_path / "asked" / ROWS)] == ["rejected"] * 2
+
+
 @pytest.mark.parametrize("plant", ["saturated", "pymunk"])
 def test_rows_do_not_depend_on_the_number_of_processes(plant: str, tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setattr(scenarios.studies.sweep.study, "MOST_BATCHED", 2)
