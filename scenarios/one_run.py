@@ -13,6 +13,7 @@ from rich.markup import escape
 from scenarios.definition.experiment import Experiment
 from scenarios.errors import plain
 from scenarios.measures.metrics import Metrics, measure
+from scenarios.measures.remarks import remarks
 from scenarios.measures.result import result
 from scenarios.recording import file, viewer
 from scenarios.recording.aside import Encoder
@@ -51,6 +52,8 @@ def run_to_folder(
     Raises:
         InputError: the folder cannot be written; known before the run starts.
     """
+    for remark in remarks(experiment, seed):
+        console.print(escape(remark), style="bold")
     folder = out or run_folder.default_path(experiment.file.name, experiment.plant, seed)
     with run_folder.writing(folder) as scratch, Encoder() if recorded else nullcontext() as encoder:
         view = _open_view(experiment, seed, live, console)

@@ -34,16 +34,16 @@ def export(
     from scenarios.definition.experiment import open_experiment
     from scenarios.export.portable import crowded, start_poses
     from scenarios.export.script import script
-    from scenarios.measures.misfits import misfits
+    from scenarios.measures.remarks import remarks
     from scenarios.storage.files import write_whole
 
     changes = options.changed(changes, safety=safety)
     experiment = open_experiment(scenario, changes, duration)
     text = script(experiment, seed)
-    remarks = [f"does not fit: {misfit}" for misfit in misfits(experiment, experiment.initial_points(seed))]
+    notes = remarks(experiment, seed)
     if (remark := crowded(start_poses(experiment, seed))) is not None:
-        remarks.append(remark)
-    for remark in remarks:
+        notes.append(remark)
+    for remark in notes:
         click.echo(f"note: {remark}", err=True)
     if out is None:
         click.echo(text, nl=False)

@@ -22,14 +22,15 @@ from formation import (
     VelocityEstimator,
     agents,
     needs,
+    decay_rates,
 )
 from formation.laws.base import ORIENTATION, SCALE
 from formation.measurements import ANGLE, RATIO
 from robots import GTERNAL, Arena, Imperfections, Instruments, NearIdentityDiffeomorphism, RobotModel
 from robots.obstacles import Obstacle
 from robots.safety import FilterSettings
-from scenarios.definition.bounds import check_size
 from scenarios.definition.formations import Aim, build_aim, with_graph
+from scenarios.definition.bounds import LONGEST_RUN, check_size
 from scenarios.definition.load import ScenarioFile, load
 from scenarios.definition.own_law import NotLoaded, OwnFactory
 from scenarios.definition.schema import Scenario
@@ -198,6 +199,8 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
         nid = NearIdentityDiffeomorphism(scenario.robot.projection_distance_m)
     if scenario.sensor.delay_periods and scenario.plant.name == "single_integrator":
         raise InputError(f"{path}: sensor.delay_periods: the plant single_integrator is continuous, expected 0")
+    if scenario.law.name == "angle":
+        _check_rates(path, aim.target, scenario.plant.control_period_s)
     arena = _arena(path, scenario)
     phases = _phases(path, scenario, aim.formation, duration)
     law, aim = _law(file, aim, phases, to_run)
@@ -217,6 +220,19 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
         filter_settings=_filter_settings(path, scenario),
         asked_duration=duration,
     )
+
+
+def _check_rates(path: str, target: TargetFormation, control_period: float) -> None:
+    """Refuse a follower so slow (rate sin^2 of its angle, Theorem 1) that the longest run there can be is too short."""
+    rates, longest = decay_rates(target), LONGEST_RUN * control_period
+    slowest = int(rates.argmin())
+    if rates[slowest] * longest < 1.0:
+        i, j, k = agents.numbers(target.graph.triangles[slowest])
+        raise InputError(
+            f"{path}: agents: Assumption 2: agent {k} is all but collinear with its neighbours {i} and {j}, |sin| = "
+            f"{abs(np.sin(target.follower_angles[slowest])):.2g}: at {rates[slowest]:.2g} 1/s it cannot settle within "
+            f"the longest run, {longest:g} s"
+        )
 
 
 def _arena(path: str, scenario: Scenario) -> Arena:

@@ -1,7 +1,8 @@
-"""What the theory alone already says against a run: predicted ends at which the robots do not fit.
+"""Starts and predicted ends at which the robots do not fit, known before anything moves.
 
 A law that converges takes its robots to the predicted end of each phase. Where two of them are too close there, one is
-off the floor or in an obstacle, no filter and no luck makes the run succeed.
+off the floor, in a wall or in an obstacle, no filter and no luck makes the run succeed. A start is known with headings,
+so there the very points are checked that the testbed checks.
 """
 
 from __future__ import annotations
@@ -12,11 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from formation import agents
-from robots.testbed import COLLISION_DISTANCE, OBSTACLE_DISTANCE, separation
+from robots.testbed import COLLISION_DISTANCE, OBSTACLE_DISTANCE, collision_centres, separation
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.tracking import predicted_ends
 
 Real = NDArray[np.float64]
+
+MOST_NAMED = 5
+"""Agents off the floor that are named one by one."""
 
 
 def misfits(experiment: Experiment, start: Real) -> list[str]:
@@ -34,8 +38,42 @@ def misfits(experiment: Experiment, start: Real) -> list[str]:
     ]
 
 
+def start_misfits(experiment: Experiment, points: Real, headings: Real) -> list[str]:
+    """One sentence for each thing that does not fit at the start, projected points (n, 2), metres, and headings (n,).
+
+    Nothing for points, which neither have wheels nor collide.
+    """
+    if experiment.plant == "single_integrator":
+        return []
+    poses = experiment.nid.poses(points, headings)
+    centres = collision_centres(poses)
+    found = [*_too_close(experiment, centres), *_in_a_wall(experiment, centres), *_in_an_obstacle(experiment, centres)]
+    outside = np.flatnonzero(~experiment.arena.contains(poses[:, :2]))
+    found += [f"{_at(row, points)}: its axle is off the floor" for row in outside[:MOST_NAMED]]
+    if len(outside) > MOST_NAMED:
+        found.append(f"{len(outside) - MOST_NAMED} more agents: off the floor")
+    return [f"the run starts with {what}" for what in found]
+
+
 def _at_end(experiment: Experiment, end: Real) -> Iterator[str]:
-    near = separation(end[None])
+    yield from _too_close(experiment, end)
+    depth, ahead = _depth(experiment, end), experiment.nid.projection_distance
+    row = int(depth.argmin())
+    if depth[row] < -ahead:  # its axle too, whichever way it heads
+        yield f"{_at(row, end)}: off the floor"
+    else:
+        yield from _in_a_wall(experiment, end)
+    yield from _in_an_obstacle(experiment, end)
+
+
+def _depth(experiment: Experiment, points: Real) -> Real:
+    """(n,) distance of each point (n, 2) from the nearest side of the floor, metres, negative beyond it."""
+    planes = experiment.arena.half_planes
+    return (points @ planes[:, :2].T - planes[:, 2]).min(axis=1)
+
+
+def _too_close(experiment: Experiment, points: Real) -> Iterator[str]:
+    near = separation(points[None])
     distance, pair = float(near.distance[0]), agents.numbers(near.pairs[0]).tolist()
     apart = f"agents {pair[0]} and {pair[1]} {distance:.3f} m apart"
     kept = experiment.filter_settings.safe_distance
@@ -43,15 +81,22 @@ def _at_end(experiment: Experiment, end: Real) -> Iterator[str]:
         yield f"{apart}: the testbed rejects less than {COLLISION_DISTANCE:g} m"
     elif experiment.safety in ("decentralised", "centralised") and distance < kept:
         yield f"{apart}: the safety filter keeps {kept:g} m"
-    arena, ahead = experiment.arena, experiment.nid.projection_distance
-    depth = end @ arena.half_planes[:, :2].T - arena.half_planes[:, 2]  # of each point inside each side
-    row = int(depth.min(axis=1).argmin())
-    if depth[row].min() < -ahead:  # its axle too, whichever way it heads
-        yield f"{_at(row, end)}: off the floor"
-    for number, obstacle in enumerate(arena.obstacles, start=1):
-        gaps = obstacle.distance(end)
+
+
+def _in_a_wall(experiment: Experiment, points: Real) -> Iterator[str]:
+    """The first chassis that reaches into a wall whichever way it heads."""
+    chassis = experiment.robot.chassis
+    depth = _depth(experiment, points)
+    row = int(depth.argmin())
+    if experiment.arena.walls and 0.0 <= depth[row] < min(chassis.length, chassis.width) / 2.0:
+        yield f"{_at(row, points)}: {depth[row]:.3f} m from a wall, in which its chassis stands"
+
+
+def _in_an_obstacle(experiment: Experiment, points: Real) -> Iterator[str]:
+    for number, obstacle in enumerate(experiment.arena.obstacles, start=1):
+        gaps = obstacle.distance(points)
         if gaps.min() < OBSTACLE_DISTANCE:
-            yield f"{_at(int(gaps.argmin()), end)}: less than {OBSTACLE_DISTANCE:g} m from obstacle {number}"
+            yield f"{_at(int(gaps.argmin()), points)}: less than {OBSTACLE_DISTANCE:g} m from obstacle {number}"
 
 
 def _at(row: int, end: Real) -> str:

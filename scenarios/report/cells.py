@@ -11,6 +11,15 @@ ROUNDED = 5e-5
 """Coordinates below this are written as zero."""
 
 
+def digits(value: float, decimals: int) -> str:
+    """A number with so many decimals, or with two digits and an exponent where these would hide it.
+
+    >>> digits(0.5, 3), digits(1e-8, 3), digits(0.0, 3)
+    ('0.500', '1.0e-08', '0.000')
+    """
+    return f"{value:.1e}" if 0.0 < abs(value) < 10.0 ** (1 - decimals) else f"{value:.{decimals}f}"
+
+
 def place(point: Any) -> str:
     """A point, a displacement or a velocity: two numbers, or None where it is not finite.
 

@@ -12,9 +12,9 @@ from formation import agents, collision_margins, decay_rates, end_similarity, ne
 from scenarios.definition.experiment import Experiment
 from scenarios.documents import cell
 from scenarios.measures.forecast import NEAR, PhaseForecast, forecast
-from scenarios.measures.misfits import misfits
+from scenarios.measures.remarks import remarks
 from scenarios.measures.tracking import predicted_late_rates
-from scenarios.report.cells import NO_PREDICTION, place
+from scenarios.report.cells import NO_PREDICTION, digits, place
 from scenarios.terminal import new_table
 
 
@@ -30,10 +30,10 @@ def print_experiment(console: Console, experiment: Experiment, seed: int) -> Non
         _print_agents(console, experiment, start, predicted[-1].end)
     if experiment.predicted:
         _print_forecast(console, experiment, predicted)
-        for misfit in misfits(experiment, start):
-            console.print(f"does not fit: {escape(misfit)}", style="bold")
     else:
         console.print(f"\n{NO_PREDICTION}")
+    for remark in remarks(experiment, seed):
+        console.print(escape(remark), style="bold")
     table = new_table("angle", "target (deg)")
     for name, value in zip(experiment.angles.names, np.degrees(experiment.target_angles), strict=True):
         table.add_row(name, f"{value:.4f}")
@@ -58,7 +58,7 @@ def _print_assumptions(console: Console, experiment: Experiment, start: Any) -> 
     )
     console.print(
         f"  2  strongly nondegenerate target: holds, flattest triangle {flattest}, "
-        f"|sin| = {sine[worst]:.3f} at {agents.name(graph.followers[worst])}"
+        f"|sin| = {digits(sine[worst], 3)} at {agents.name(graph.followers[worst])}"
     )
     console.print(f"  p_1(0) != p_2(0): holds, {distance:.3f} m apart\n")
 
@@ -100,8 +100,8 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
         if follower >= 0:
             cells = [
                 f"{np.degrees(target.follower_angles[follower]):.2f}",
-                f"{rates[follower]:.4f}",
-                "-" if late is None else f"{late[follower]:.4f}",
+                digits(rates[follower], 4),
+                "-" if late is None else digits(late[follower], 4),
                 f"{margins[follower]:+.3f}" if still else "-",
             ]
         table.add_row(
