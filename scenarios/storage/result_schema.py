@@ -76,7 +76,7 @@ class Result(Part):
     duration_s: NotNegative
     planned_duration_s: Positive
     asked_duration_s: Positive | None = None
-    outcome: Literal["converged", "not_converged", "diverged"]
+    outcome: Literal["converged", "not_converged", "rejected", "diverged"]
     goal_rad: Positive
     angles: list[Angle]
     angle_error_sum_rad: NotNegative | None

@@ -68,7 +68,7 @@ def size(out: Path) -> int:
 
 def differing(out: Path, whole: Path) -> list[str]:
     """Files that are not those of a sweep that nothing stopped, or should not be there."""
-    left = [path.name for path in out.iterdir() if path.name not in (*FILES, ".sweep.lock")]
+    left = [path.name for path in out.iterdir() if path.name not in FILES]
     return left + [name for name in FILES if (out / name).read_bytes() != (whole / name).read_bytes()]
 
 
@@ -89,6 +89,7 @@ def main() -> None:
     given = options.parse_args()
     rng = random.Random(given.seed)
     os.environ["OMP_NUM_THREADS"] = "1"
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job passes on that it ignores it
     different = 0
     with tempfile.TemporaryDirectory() as scratch:
         whole = [Path(scratch) / f"whole-{number}" for number in range(len(STUDIES))]

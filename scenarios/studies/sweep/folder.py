@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import json
+import os
 from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,14 +16,15 @@ from typing import Any, BinaryIO
 
 from scenarios.errors import InputError
 from scenarios.storage.files import write_whole
+from scenarios.storage.scratch import beside
 from scenarios.studies.sweep.row import Row, columns
 from scenarios.studies.sweep.study import Batch, Study
 
 ROWS, PARTIAL, SUMMARY = "rows.csv", "rows.partial.csv", "summary.json"
 """Files of a sweep; the rows are partial until the last run is done."""
 
-STUDY, LOCK = "study.json", ".sweep.lock"
-"""What the rows are of, and what the process that writes them holds."""
+STUDY = "study.json"
+"""What the rows are of."""
 
 LONGEST_LINE = 1 << 16
 """Bytes of a row; what is longer is none."""
@@ -33,19 +35,17 @@ LONGEST_SHOWN = 60
 
 @contextmanager
 def claimed(folder: Path) -> Iterator[None]:
-    """Hold a folder for one writer; it is made where it is missing. The lock ends with its process, however that ends.
+    """Hold a folder for one writer; it is made where it is missing. The hold ends with its process, however that ends.
 
     Raises:
-        InputError: another process holds it, or it cannot be written.
+        InputError: another process holds it, or it cannot be one.
     """
-    from filelock import FileLock, Timeout
-
-    folder.mkdir(parents=True, exist_ok=True)
-    try:
-        with FileLock(folder / LOCK, timeout=0):
-            yield
-    except Timeout:
-        raise InputError(f"--out {folder}: another sweep is writing there") from None
+    place = Path(os.path.realpath(folder))
+    if place == place.parent:
+        raise InputError(f"--out {folder}: expected a folder with a name")
+    with beside(place, exclusive=True):
+        place.mkdir(exist_ok=True)
+        yield
 
 
 def begin(folder: Path, study: Study, restart: bool) -> int:

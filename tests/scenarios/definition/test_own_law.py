@@ -228,9 +228,9 @@ def test_worker_processes_load_the_law_and_tell_its_mistakes(own: Callable[..., 
     assert "2 runs" in out
     own(TIRED)
     code, out, err = cli(*sweep)
-    assert (code, out) == (BAD_INPUT, "")
-    assert err.startswith("formation: my_law.py:13: a call of the law raised RuntimeError")
-    assert err.count("\n") == 1
+    assert (code, err) == (DONE, "")
+    assert "failed: seeds 0, 1: my_law.py:13: a call of the law raised RuntimeError: too much\n" in out
+    assert "to see the first: formation run ./mine.toml --seed 0 --set duration_s=1\n" in out
 
 
 def test_nothing_is_predicted_of_an_own_law(own: Callable[..., str], cli: Cli) -> None:
