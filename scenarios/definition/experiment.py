@@ -21,16 +21,16 @@ from formation import (
     TargetFormation,
     VelocityEstimator,
     agents,
-    needs,
     decay_rates,
+    needs,
 )
 from formation.laws.base import ORIENTATION, SCALE
 from formation.measurements import ANGLE, RATIO
 from robots import GTERNAL, Arena, Imperfections, Instruments, NearIdentityDiffeomorphism, RobotModel
 from robots.obstacles import Obstacle
 from robots.safety import FilterSettings
-from scenarios.definition.formations import Aim, build_aim, with_graph
 from scenarios.definition.bounds import LONGEST_RUN, check_size
+from scenarios.definition.formations import Aim, build_aim, with_graph
 from scenarios.definition.load import ScenarioFile, load
 from scenarios.definition.own_law import NotLoaded, OwnFactory
 from scenarios.definition.schema import Scenario
@@ -199,7 +199,7 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
         nid = NearIdentityDiffeomorphism(scenario.robot.projection_distance_m)
     if scenario.sensor.delay_periods and scenario.plant.name == "single_integrator":
         raise InputError(f"{path}: sensor.delay_periods: the plant single_integrator is continuous, expected 0")
-    if scenario.law.name == "angle":
+    if scenario.law.name == "angle" and aim.target is not None:
         _check_rates(path, aim.target, scenario.plant.control_period_s)
     arena = _arena(path, scenario)
     phases = _phases(path, scenario, aim.formation, duration)
