@@ -156,7 +156,7 @@ def _change_by_frames(subject: Subject, rng: np.random.Generator, mirrored: bool
 def compass(subject: Subject, rng: np.random.Generator) -> Finding:
     """A law that declares a compass uses it: where it shows other directions, agents move otherwise."""
     if not subject.law.needs_compass:
-        return Finding("compass", None, remark="none is declared, none is given")
+        return Finding("compass", True, remark="none is declared, and none is given")
     measured, shown = subject.measure(subject.places(rng)[0])
     whole = subject.ask(measured, shown)
     used = bool((subject.ask(measured, np.full_like(whole, np.nan)) != whole).any())

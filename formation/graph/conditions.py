@@ -1,8 +1,4 @@
-"""What a law may demand of its sensing graph, checked with the agent or the edge that breaks it.
-
-Rank conditions are those of the framework at p*: the rows of a rigidity matrix, one for each undirected edge, must
-leave free what the kind of constraint leaves free, and nothing else.
-"""
+"""What a law may demand of its sensing graph, checked with the agent or the edge that breaks it."""
 
 from __future__ import annotations
 
@@ -13,12 +9,11 @@ import numpy as np
 
 from formation import agents
 from formation.framework import Framework
+from formation.graph import constructions
 from formation.graph.edges import Index, edge_name
+from formation.graph.rigidity import check_rank
 from formation.graph.sensing import SensingGraph
-from formation.plane import Real
-
-RANK = 1e-9
-"""Relative to the largest: a smaller singular value counts as zero."""
+from formation.graph.stress import equilibrium_stress
 
 
 def leader_first_follower(formation: Framework) -> None:
@@ -72,60 +67,22 @@ def reached(n: int, edges: Index, roots: set[int]) -> np.ndarray[tuple[int], np.
         found[news] = True
 
 
-def undirected_pairs(edges: Index) -> Index:
-    """(u, 2) the undirected edges, each once, the smaller row first."""
-    return np.unique(np.sort(edges, axis=1), axis=0)
-
-
-def rigidity_matrix(formation: Framework, bearings: bool = False) -> Real:
-    """(u, 2n) derivative of the edges' distances (or bearings) by the places, each row divided by the edge's length."""
-    pairs = undirected_pairs(formation.graph.edges)
-    p = formation.positions
-    direction = p[pairs[:, 1]] - p[pairs[:, 0]]
-    direction = direction / np.linalg.norm(direction, axis=1, keepdims=True)
-    if bearings:
-        direction = np.stack([-direction[:, 1], direction[:, 0]], axis=1)
-    matrix = np.zeros((len(pairs), formation.graph.n, 2))
-    rows = np.arange(len(pairs))
-    matrix[rows, pairs[:, 1]] = direction
-    matrix[rows, pairs[:, 0]] = -direction
-    return matrix.reshape(len(pairs), -1)
-
-
 def rigid(formation: Framework) -> None:
     """Undirected, and the distances along the edges determine the framework near p* (infinitesimally)."""
     undirected(formation)
-    _check_rank(formation, "rigid", bearings=False)
+    check_rank(formation, "rigid", bearings=False)
 
 
 def bearing_rigid(formation: Framework) -> None:
     """Undirected, and the bearings along the edges determine the framework but for scale and place."""
     undirected(formation)
-    _check_rank(formation, "bearing rigid", bearings=True)
+    check_rank(formation, "bearing rigid", bearings=True)
 
 
-def _check_rank(formation: Framework, word: str, bearings: bool) -> None:
-    n = formation.graph.n
-    _, values, directions = np.linalg.svd(rigidity_matrix(formation, bearings))
-    rank = int((values > RANK * values.max(initial=0.0)).sum())
-    if rank < 2 * n - 3:
-        loose = _loosest(formation, directions[rank:], bearings)
-        raise ValueError(
-            f"the framework is not {word}: {rank} of {2 * n - 3} constraints are independent, {agents.name(loose)} "
-            "can move against the others"
-        )
-
-
-def _loosest(formation: Framework, free: Real, bearings: bool) -> int:
-    """The agent that moves most in the free motions once the trivial ones are taken out."""
-    p = formation.positions - formation.positions.mean(axis=0)
-    turn = p if bearings else np.stack([-p[:, 1], p[:, 0]], axis=1)
-    ones = np.ones(len(p))
-    trivial = np.stack([np.kron(ones, [1.0, 0.0]), np.kron(ones, [0.0, 1.0]), turn.ravel()], axis=1)
-    basis, _ = np.linalg.qr(trivial)
-    rest = free - (free @ basis) @ basis.T
-    moved = np.linalg.norm(rest.reshape(len(free), -1, 2), axis=2)
-    return int(moved.max(axis=0).argmax())
+def universally_rigid(formation: Framework) -> None:
+    """Undirected, with an equilibrium stress that leaves free the affine images of the framework and nothing else."""
+    undirected(formation)
+    equilibrium_stress(formation)
 
 
 CONDITIONS: Mapping[str, Callable[[Framework], None]] = MappingProxyType(
@@ -137,6 +94,14 @@ CONDITIONS: Mapping[str, Callable[[Framework], None]] = MappingProxyType(
         "two-rooted": two_rooted,
         "rigid": rigid,
         "bearing rigid": bearing_rigid,
+        "universally rigid": universally_rigid,
+        "triangulated": constructions.triangulated,
+        "triangulated Laman": constructions.triangulated_laman,
+        "minimally persistent": constructions.minimally_persistent,
+        "ordered": constructions.ordered,
+        "three before": constructions.three_before,
+        "signed angles": constructions.signed_angles,
+        "triangle": constructions.triangle,
     }
 )
 """Each condition by the name that a law declares; each raises a ValueError that names what breaks it."""

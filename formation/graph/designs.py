@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from itertools import combinations
 from types import MappingProxyType
 
+import numpy as np
+
+from formation import agents
 from formation.framework import Framework
 from formation.graph.conditions import CONDITIONS
+from formation.graph.constructions import angle_slopes
 from formation.graph.directed import DirectedGraph
+from formation.plane import Complex, as_complex
+
+MOST_TRIPLES = 400
+"""Triples of agents from which a graph for signed angles is grown, at most."""
 
 
 def design(condition: str, formation: Framework) -> Framework:
@@ -34,10 +43,143 @@ def design(condition: str, formation: Framework) -> Framework:
 
 
 def both_ways(formation: Framework) -> DirectedGraph:
-    """Every edge of the formation graph, sensed from both its ends."""
-    return DirectedGraph.both_ways(formation.graph.n, formation.graph.formation_edges)
+    """Every edge of the formation graph, sensed from both its ends; those of a triangulation where they do not do."""
+    designed = DirectedGraph.both_ways(formation.graph.n, formation.graph.formation_edges)
+    try:
+        CONDITIONS["rigid"](Framework(designed, formation.positions))
+    except ValueError:
+        return laman(formation)
+    return designed
+
+
+def triangulation(formation: Framework) -> DirectedGraph:
+    """The formation graph both ways if it is triangulated, as that of a leader-first-follower graph is."""
+    designed = both_ways(formation)
+    try:
+        CONDITIONS["triangulated"](Framework(designed, formation.positions))
+    except ValueError:
+        return laman(formation)
+    return designed
+
+
+def laman(formation: Framework) -> DirectedGraph:
+    """A triangulated Laman graph: each agent k >= 3 joins the edge of agents before it with which it is roundest."""
+    p = as_complex(formation.positions)
+    edges = [(agents.FIRST_FOLLOWER, agents.LEADER)]
+    for k in range(agents.FIRST_ORDINARY, len(p)):
+        j, i = max(edges, key=lambda edge: _roundness(p, [*edge, k]))
+        edges += [(k, i), (k, j)]
+    return DirectedGraph.both_ways(len(p), edges)
+
+
+def pairs_before(formation: Framework) -> DirectedGraph:
+    """Agent 2 senses 1, each later agent the two before it with which it is roundest."""
+    p = as_complex(formation.positions)
+    edges = [(agents.FIRST_FOLLOWER, agents.LEADER)]
+    for k in range(agents.FIRST_ORDINARY, len(p)):
+        pair = max(combinations(range(k), 2), key=lambda pair: _roundness(p, [*pair, k]))
+        edges += [(k, i) for i in pair]
+    return DirectedGraph(len(p), np.array(edges))
+
+
+def all_before(formation: Framework) -> DirectedGraph:
+    """Every agent senses all agents before it."""
+    n = formation.graph.n
+    return DirectedGraph(n, np.array([(k, i) for k in range(n) for i in range(k)]))
+
+
+def three_before(formation: Framework) -> DirectedGraph:
+    """Every agent k >= 4 senses the three before it whose real weights are smallest."""
+    return DirectedGraph(formation.graph.n, np.array(list(_threes(formation))))
+
+
+def lateration(formation: Framework) -> DirectedGraph:
+    """The first three agents sense each other, and each later one and its three neighbours."""
+    edges = [(1, 0), (2, 0), (2, 1), *_threes(formation)]
+    return DirectedGraph.both_ways(formation.graph.n, edges)
+
+
+def signed_angles(formation: Framework) -> DirectedGraph:
+    """Grown from the triple of agents from which the slowest follower is fastest; each takes its best three."""
+    p = as_complex(formation.positions)
+    starts = [t for t in combinations(range(len(p)), 3) if _roundness(p, list(t)) > 0.05][:MOST_TRIPLES]
+    grown = [_grow(p, start) for start in starts]
+    if not grown:
+        raise ValueError("all agents are collinear in the target")
+    _, edges = max(grown, key=lambda each: each[0])
+    return DirectedGraph(len(p), np.array(edges))
+
+
+def complete(formation: Framework) -> DirectedGraph:
+    """All agents sense each other."""
+    return DirectedGraph.both_ways(formation.graph.n, list(combinations(range(formation.graph.n), 2)))
+
+
+def _roundness(p: Complex, triangle: list[int]) -> float:
+    """Twice the area of a triangle over the square of its longest side; at most 0.87, 0 where it is flat."""
+    a, b, c = p[triangle]
+    longest = max(abs(a - b), abs(b - c), abs(c - a))
+    return abs(((a - c) * np.conj(b - c)).imag) / longest**2 if longest else 0.0
+
+
+def _threes(formation: Framework) -> Iterable[tuple[int, int]]:
+    p = as_complex(formation.positions)
+    for k in range(3, len(p)):
+        options = [t for t in combinations(range(k), 3) if _roundness(p, list(t)) > 1e-3]
+        if not options:
+            raise ValueError(f"all agents before {agents.name(k)} are collinear in the target")
+        best = min(options, key=lambda t: _weight(p, t, k))
+        yield from ((k, i) for i in best)
+
+
+def _weight(p: Complex, t: tuple[int, ...], k: int) -> float:
+    z = p[list(t)] - p[k]
+    return float(np.abs(np.linalg.solve(np.stack([np.ones(3), z.real, z.imag]), [1.0, 0.0, 0.0])).sum())
+
+
+def _grow(p: Complex, start: tuple[int, ...]) -> tuple[float, list[tuple[int, int]]]:
+    """The slowest follower's rate, and the edges, of the graph for signed angles that grows from three agents."""
+    edges = [(k, i) for k in start for i in start if i != k]
+    placed, slowest = list(start), np.inf
+    while len(placed) < len(p):
+        options = [
+            (angle_rate(p[sorted(t)] - p[k]), k, t)
+            for k in range(len(p))
+            if k not in placed
+            for t in combinations(placed, 3)
+        ]
+        rate, k, best = max(options) if len(placed) > 3 else max(options, key=lambda each: each[0])
+        slowest = min(slowest, rate)
+        edges += [(k, i) for i in best]
+        placed.append(k)
+    return slowest, edges
+
+
+def angle_rate(rays: Complex) -> float:
+    """The rate, 1/s, at which an agent that sees three others along rays (3,), metres, returns by their bisectors."""
+    turn = np.angle(rays[1:] * np.conj(rays[:-1]))
+    slopes = angle_slopes(rays) * np.sign(turn)[:, None]
+    b = rays / np.abs(rays)
+    bisectors = b[1:] + b[:-1]
+    loop = -np.stack([bisectors.real, bisectors.imag]) @ slopes
+    return float(-np.linalg.eigvals(loop).real.max())
 
 
 DESIGNS: Mapping[str, Callable[[Framework], DirectedGraph]] = MappingProxyType(
-    {"undirected": both_ways, "rigid": both_ways, "bearing rigid": both_ways}
+    {
+        "leader-first-follower": pairs_before,
+        "undirected": both_ways,
+        "rooted": pairs_before,
+        "two-rooted": pairs_before,
+        "rigid": both_ways,
+        "bearing rigid": both_ways,
+        "universally rigid": lateration,
+        "triangulated": triangulation,
+        "triangulated Laman": laman,
+        "minimally persistent": pairs_before,
+        "ordered": all_before,
+        "three before": three_before,
+        "signed angles": signed_angles,
+        "triangle": complete,
+    }
 )

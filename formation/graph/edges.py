@@ -26,3 +26,24 @@ def edge_name(edge: Iterable[int]) -> str:
     """How messages name an edge given by rows: ``(3, 1)``, agents by number."""
     k, i = (agents.number(row) for row in edge)
     return f"({k}, {i})"
+
+
+def triangles(edges: Index) -> Index:
+    """(t, 3) agents i < j < k that all sense each other."""
+    known = {(k, i) for k, i in edges.tolist()}
+    mutual = sorted((k, i) for k, i in known if k < i and (i, k) in known)
+    found = [(i, j, k) for i, j in mutual for other, k in mutual if other == j and (i, k) in known and (k, i) in known]
+    return np.array(found, dtype=np.intp).reshape(-1, 3)
+
+
+def rows_of(edges: Index, wanted: Index) -> Index:
+    """The rows of ``edges`` (m, 2) that hold the edges ``wanted`` (..., 2).
+
+    Raises:
+        ValueError: one is not there; the message names it.
+    """
+    place = {(k, i): row for row, (k, i) in enumerate(edges.tolist())}
+    flat = np.asarray(wanted, dtype=np.intp).reshape(-1, 2).tolist()
+    if missing := [edge for edge in flat if tuple(edge) not in place]:
+        raise ValueError(f"edge {edge_name(missing[0])} is missing")
+    return np.array([place[k, i] for k, i in flat], dtype=np.intp).reshape(np.shape(wanted)[:-1])

@@ -32,8 +32,8 @@ from robots.safety import FilterSettings
 from scenarios.definition.bounds import LONGEST_RUN, check_size
 from scenarios.definition.formations import Aim, build_aim, with_graph
 from scenarios.definition.load import ScenarioFile, load
-from scenarios.definition.own_law import NotLoaded, OwnFactory
-from scenarios.definition.schema import Scenario
+from scenarios.definition.own_law import NotLoaded, OwnFactory, check_parameters
+from scenarios.definition.schema import LawTable, Scenario
 from scenarios.definition.starts import Starts, build_starts
 from scenarios.errors import InputError, located
 
@@ -260,15 +260,23 @@ def _filter_settings(path: str, scenario: Scenario) -> FilterSettings:
 def _law(file: ScenarioFile, aim: Aim, phases: tuple[Phase, ...], to_run: bool) -> tuple[FormationLaw, Aim]:
     """The law, and the aim with the graph that it is made for, which an own law's file may decide."""
     table = file.scenario.law
-    if table.name == "angle" and aim.target is not None:
-        return AngleLaw(aim.target, table.first_follower), aim
     if table.name != "own":
-        return LAWS[table.name](aim.formation), aim
+        return _built_in(file.path, table, aim), aim
     if not to_run or file.law is None or table.factory is None:
         return NotLoaded(), aim
     factory = OwnFactory(file.path, file.law, table.factory, table.parameters)
     aim = with_graph(file.path, file.scenario, aim, factory.graph)
     return factory.make(aim.formation, phases[0].delta), aim
+
+
+def _built_in(path: str, table: LawTable, aim: Aim) -> FormationLaw:
+    if isinstance(aim.formation, TargetFormation) and table.name == "angle":
+        check_parameters(path, "the angle law", lambda target: None, table.parameters)
+        return AngleLaw(aim.formation, table.first_follower)
+    make = LAWS[table.name]
+    check_parameters(path, f"the {table.name} law", make, table.parameters)
+    with located(path, "law"):
+        return make(aim.formation, **table.parameters)
 
 
 def _estimator(path: str, scenario: Scenario, graph: Graph) -> VelocityEstimator | None:

@@ -174,7 +174,7 @@ def _check_own_law(law: LawTable, file: str) -> None:
     """An own law has a file and a factory and decides for agent 2; the others have none of its keys."""
     none = LawTable()
     if law.name != "own":
-        for key in OWN_LAW_KEYS:
+        for key in ("file", "factory"):
             if getattr(law, key) != getattr(none, key):
                 raise InputError(f'{file}: law.{key}: only for law.name = "own", got "{law.name}"')
         return

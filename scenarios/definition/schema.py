@@ -87,6 +87,19 @@ class LawTable(Table):
         "bearing-undirected",
         "distance",
         "distance-undirected",
+        "ratio",
+        "redundant",
+        "area",
+        "area-undirected",
+        "persistent",
+        "cosine",
+        "triangular",
+        "bisector",
+        "laplacian",
+        "affine",
+        "affine-undirected",
+        "triangle-angles",
+        "triangle-mixed",
         "own",
     ] = "angle"
     """The paper's law, one of those that it weighs itself against (docs/laws.md), or an own law, whose file is
@@ -102,7 +115,7 @@ class LawTable(Table):
     factory: str | None = None
     """Function or class in that file, called once as `factory(target, **parameters)`; docs/own-law.md says more."""
     parameters: dict[str, Number] = Field(default_factory=dict)
-    """What the factory is called with, by name."""
+    """What the factory is called with, by name; or a built-in law's own gains, those of docs/laws.md."""
 
 
 class CommunicationTable(Table):

@@ -300,7 +300,7 @@ TABLES = {
     'file="my_law.py"': 'law.file: only for law.name = "own", got "angle"',
     'file=""': 'law.file: only for law.name = "own", got "angle"',
     'name="bearing"\nfactory="MyLaw"': 'law.factory: only for law.name = "own", got "bearing"',
-    "parameters={gain=1.0}": 'law.parameters: only for law.name = "own", got "angle"',
+    "parameters={gain=1.0}": "law.parameters.gain: not a parameter of the angle law, it takes none",
     'name="own"\nfile="none.py"\nfactory="MyLaw"': "law.file: no such file: none.py",
     'name="own"\nfile="."\nfactory="MyLaw"': "law.file: . cannot be read: Is a directory",
     'name="own"\nfile="a\\u0000"\nfactory="MyLaw"': "law.file",
