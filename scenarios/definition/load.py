@@ -12,7 +12,7 @@ from pydantic import BaseModel, ValidationError
 
 from scenarios.definition import law_file
 from scenarios.definition.bounds import LARGEST_INTEGER
-from scenarios.definition.digest import OWN_LAW_KEYS, digest
+from scenarios.definition.digest import digest
 from scenarios.definition.law_file import LawFile
 from scenarios.definition.reading import read_regular
 from scenarios.definition.schema import LawTable, Scenario
