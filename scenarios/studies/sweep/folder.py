@@ -87,6 +87,8 @@ def begin(folder: Path, study: Study, restart: bool) -> int:
         file.truncate(end)
         if end == 0:
             file.write(_header(study))
+    if done == study.runs:  # all that was missing was the name
+        finish(folder)
     return done
 
 

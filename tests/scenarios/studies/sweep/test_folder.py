@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from scenarios.errors import InputError
@@ -50,6 +50,8 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Study, dict[str, by
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow], max_examples=20)
+@example(cut=1.0, torn=b"")
+@example(cut=1.0, torn=b"shape,sat")
 @given(cut=st.floats(0.0, 1.0), torn=st.sampled_from([b"", b"shape,sat", b"\xff\x00", b'"', b"a,b\n", b"\n"]))
 def test_a_sweep_goes_on_from_any_beginning_of_its_rows_and_ends_with_the_rows_of_a_whole_one(
     whole: tuple[Study, dict[str, bytes]], tmp_path_factory: pytest.TempPathFactory, cut: float, torn: bytes
