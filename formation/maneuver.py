@@ -27,6 +27,11 @@ class Phase:
     velocity: tuple[float, float] = (0.0, 0.0)
     delta: tuple[float, float] | None = None
 
+    @property
+    def displacement(self) -> complex | None:
+        """``delta`` as a complex number."""
+        return None if self.delta is None else complex(*self.delta)
+
 
 def pair_ends(start: Real, phases: Sequence[Phase], first_follower: str) -> Real:
     """(P, 2, 2) where Theorem 2 puts agents 1 and 2 at the end of each phase, metres, once agent 2 has settled.

@@ -1,4 +1,8 @@
-"""Predicted beside measured decay: how each follower nears its place, phase by phase (Theorem 1)."""
+"""Predicted beside measured decay: how each follower nears its place, phase by phase (Theorem 1).
+
+The dashed lines are the exact solution of the closed loop from the phase's first state: ideal agents, whose commands
+are held over a control period where the plant holds them, with neither wheels' limits nor a filter.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +18,10 @@ from scenarios.definition.experiment import Experiment
 from scenarios.figures.palette import INK, agent_colour
 from scenarios.figures.style import COLUMN, SMALL, panel, sheet
 from scenarios.figures.timelines import MANY, TIME
+from scenarios.measures.late_rates import predicted_late_rates
 from scenarios.measures.metrics import Metrics
-from scenarios.measures.tracking import predicted_ends, predicted_late_rates
+from scenarios.measures.theory import motion, moves_exactly
+from scenarios.measures.tracking import predicted_ends
 from scenarios.simulation.trajectory import Trajectory
 
 Real = NDArray[np.float64]
@@ -33,15 +39,15 @@ DASHED = (0, (3.0, 1.5))
 
 
 def decay(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> Figure:
-    """The distance of each follower from its place beside exp(-sin^2(a_k) t), one panel per phase."""
+    """The distance of each follower from its place beside the exact solution, one panel per phase."""
     indices = np.unique(trajectory.phase).tolist()
-    rates = decay_rates(experiment.target)
-    handles = _legend(experiment, rates)
+    slowest = _slowest(experiment, trajectory)
+    handles = _legend(experiment, slowest)
     bottom = 0.40 + 0.105 * -(-len(handles) // COLUMNS)
     figure = sheet(bottom + len(indices) * (PANEL + GAP) - 0.12)
     for place, index in enumerate(reversed(indices)):
         axes = panel(figure, LEFT, bottom + place * (PANEL + GAP), COLUMN - LEFT - RIGHT, PANEL)
-        _draw_phase(axes, experiment, trajectory, index, rates)
+        _draw_phase(axes, experiment, trajectory, index, slowest if place == 0 else None)
         if len(indices) > 1:
             title = f"{experiment.phases[index].name}, from {trajectory.t[_rows(trajectory, index)[0]]:g} s"
             axes.set_title(title, loc="left")
@@ -53,24 +59,23 @@ def decay(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> F
     return figure
 
 
-def _legend(experiment: Experiment, rates: Real) -> list[Line2D]:
-    handles = [
-        Line2D([], [], color=INK, linewidth=0.9, label="measured"),
-        Line2D([], [], color=INK, linewidth=0.6, linestyle=DASHED, label=r"$\exp(-\sin^2\!\alpha_k\,t)$"),
-    ]
-    if (slowest := _slowest(experiment)) is not None:
+def _legend(experiment: Experiment, slowest: float | None) -> list[Line2D]:
+    handles = [Line2D([], [], color=INK, linewidth=0.9, label="measured")]
+    if moves_exactly(experiment):
+        handles.append(Line2D([], [], color=INK, linewidth=0.6, linestyle=DASHED, label="exact solution"))
+    if slowest is not None:
         handles.append(Line2D([], [], color=INK, linewidth=0.8, linestyle=":", label=f"late, {slowest:.2f} /s"))
-    if len(rates) <= MANY:
-        for row, rate in zip(experiment.target.graph.followers.tolist(), rates.tolist(), strict=True):
+    if experiment.n - agents.FIRST_ORDINARY <= MANY:
+        for row, rate in zip(experiment.target.graph.followers.tolist(), decay_rates(experiment.target).tolist(), strict=True):
             text = f"agent {agents.number(row)}, {rate:.2f} /s"
             handles.append(Line2D([], [], color=agent_colour(row), linewidth=1.4, label=text))
     return handles
 
 
-def _slowest(experiment: Experiment) -> float | None:
-    """The rate, 1/s, that the slowest cascade comes down to in the end."""
-    rates = predicted_late_rates(experiment)
-    return None if rates is None else float(rates.min())
+def _slowest(experiment: Experiment, trajectory: Trajectory) -> float | None:
+    """The rate, 1/s, predicted of the follower that is the slowest to come down in the last phase."""
+    rates = [rate for rate in predicted_late_rates(experiment, trajectory) or [] if rate is not None]
+    return min(rates) if rates else None
 
 
 def _rows(trajectory: Trajectory, index: int) -> NDArray[np.intp]:
@@ -94,22 +99,29 @@ def places(experiment: Experiment, trajectory: Trajectory, index: int) -> Real:
     return end - ahead[:, None, :]
 
 
-def _draw_phase(axes: Axes, experiment: Experiment, trajectory: Trajectory, index: int, rates: Real) -> None:
+def _draw_phase(axes: Axes, experiment: Experiment, trajectory: Trajectory, index: int, late: float | None) -> None:
     rows = _rows(trajectory, index)
     t = trajectory.t[rows] - trajectory.t[rows[0]]
-    distances = np.linalg.norm(trajectory.points[rows] - places(experiment, trajectory, index), axis=-1)
-    for row, rate in zip(experiment.target.graph.followers.tolist(), rates.tolist(), strict=True):
+    where = places(experiment, trajectory, index)
+    distances = np.linalg.norm(trajectory.points[rows] - where, axis=-1)
+    exact = None
+    if moves_exactly(experiment):
+        ideal = motion(experiment, trajectory.points[rows[0]], index)[: len(rows)]
+        exact = np.linalg.norm(ideal - where, axis=-1)
+    for row in experiment.target.graph.followers.tolist():
         axes.semilogy(t, distances[:, row], color=agent_colour(row), linewidth=0.9, label=f"measured {row}")
-        predicted = distances[0, row] * np.exp(-rate * t)
-        axes.semilogy(t, predicted, color=agent_colour(row), linewidth=0.6, linestyle=DASHED, label=f"predicted {row}")
-    followers = distances[:, agents.FIRST_ORDINARY :].max(axis=1)
-    near = np.flatnonzero(followers < NEAREST)
+        if exact is not None:
+            axes.semilogy(
+                t, exact[:, row], color=agent_colour(row), linewidth=0.6, linestyle=DASHED, label=f"predicted {row}"
+            )
+    farthest = distances[:, agents.FIRST_ORDINARY :].max(axis=1)
+    near = np.flatnonzero(farthest < NEAREST)
     until = t[near[0]] if near.size else t[-1]
-    axes.set(xlim=(0.0, max(until, t[-1] * 0.1)), ylim=(NEAREST, 2.5 * followers.max()), ylabel="distance (m)")
+    axes.set(xlim=(0.0, max(until, t[-1] * 0.1)), ylim=(NEAREST, 2.5 * farthest.max()), ylabel="distance (m)")
     axes.yaxis.set_major_locator(LogLocator(numticks=5))
     axes.yaxis.set_minor_locator(NullLocator())
-    if (slowest := _slowest(experiment)) is not None:
-        _guide(axes, t, distances[:, agents.FIRST_ORDINARY :].max(axis=1), slowest)
+    if late is not None:
+        _guide(axes, t, farthest, late)
     _note_push(axes, experiment, trajectory, index)
 
 

@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from formation import agents, propagate, settling_bound
-from formation.analysis import closed_loop
+from formation import Phase
+from formation.analysis.cascade import Cascade
+from formation.analysis.closed_loop import arrival
+from formation.analysis.exact import ideal, points
+from formation.plane import Complex, as_complex
 from scenarios.definition.experiment import Experiment
+from scenarios.measures.theory import moves_exactly
 from scenarios.measures.tracking import predicted_ends
 
 Real = NDArray[np.float64]
 
 NEAR = 0.01
 """Metres from its place within which an agent counts as arrived in a forecast."""
+
+STEP = 0.05
+"""Seconds to which the time of arrival is told."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +32,8 @@ class PhaseForecast:
 
     Attributes:
         end: (n, 2) the end configuration to which the phase converges, metres, at the phase's end.
-        points: (n, 2) where the agents are at the phase's end, metres; None where the closed loop is not linear.
+        points: (n, 2) where the agents are at the phase's end, metres; None where the exact
+            solution does not cover the run.
         error_sum: sum of the absolute angle errors there, radians; None likewise.
         arrival: seconds into the phase after which every agent stays within :data:`NEAR` of its place; None likewise,
             or if it never does.
@@ -38,22 +47,23 @@ class PhaseForecast:
 
 def forecast(experiment: Experiment, start: Real) -> list[PhaseForecast]:
     """The forecast of each phase from a start (n, 2), metres: Theorems 1 and 2 and the closed loop's exact solution."""
-    linear = (
-        experiment.scenario.law.name == "angle"
-        and experiment.first_follower in closed_loop.FIRST_FOLLOWER_RATE
-        and experiment.scenario.law.activation == "simultaneous"
-        and experiment.estimator is None
-    )
-    points: Real | None = start if linear else None
+    here: Real | None = start if moves_exactly(experiment) else None
     forecasts = []
     for phase, end in zip(experiment.phases, predicted_ends(experiment, start), strict=True):
-        if points is None:
+        if here is None:
             forecasts.append(PhaseForecast(end, None, None, None))
             continue
-        errors = points - (end - np.array(phase.velocity) * phase.duration)
-        errors[agents.LEADER] = 0.0  # exact by definition; what is left is rounding
-        arrival = settling_bound(experiment.target, errors, NEAR, experiment.first_follower)
-        points = end + propagate(experiment.target, errors, phase.duration, experiment.first_follower)
-        error_sum = float(np.abs(experiment.angles.errors(points, experiment.target_angles)).sum())
-        forecasts.append(PhaseForecast(end, points, error_sum, arrival))
+        steps = int(np.ceil(phase.duration / STEP))
+        loop, first = Cascade.of(experiment.target), experiment.first_follower
+        arrived = arrival(_errors(loop, as_complex(here), phase, first, as_complex(end)), loop.reach, NEAR, STEP)
+        here = points(ideal(loop, as_complex(here), phase, first, phase.duration / steps), steps)[-1]
+        error_sum = float(np.abs(experiment.angles.errors(here, experiment.target_angles)).sum())
+        forecasts.append(PhaseForecast(end, here, error_sum, arrived))
     return forecasts
+
+
+def _errors(loop: Cascade, start: Complex, phase: Phase, first_follower: str, end: Complex) -> Iterator[Complex]:
+    """(n,) differences from the moving end configuration, complex metres, every :data:`STEP` seconds for ever."""
+    velocity = complex(*phase.velocity)
+    for index, p in enumerate(ideal(loop, start, phase, first_follower, STEP)):
+        yield p - (end + velocity * (index * STEP - phase.duration))

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from robots.testbed import Separation, Verdict, collision_centres, judge, separation
 from scenarios.definition.experiment import Experiment
-from scenarios.measures.tracking import Tracking, measured_late_rates, predicted_ends, track
+from scenarios.measures.late_rates import measured_late_rates
+from scenarios.measures.tracking import Tracking, predicted_ends, track
 from scenarios.measures.window import WINDOW, Window, trailing
 from scenarios.simulation.trajectory import Trajectory
 

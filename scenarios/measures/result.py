@@ -12,9 +12,10 @@ from formation import agents
 from robots.testbed import Violation
 from robots.worlds import NOTHING
 from scenarios.definition.experiment import Experiment
+from scenarios.measures.late_rates import predicted_late_rates
 from scenarios.measures.metrics import Metrics, PhaseEnd
 from scenarios.measures.safety_result import safety_result
-from scenarios.measures.tracking import Tracking, predicted_late_rates
+from scenarios.measures.tracking import Tracking
 from scenarios.measures.window import WINDOW, Window
 from scenarios.simulation.trajectory import Trajectory
 from scenarios.storage.result_schema import SCHEMA_VERSION
@@ -67,7 +68,7 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
             "violations": [_violation(v) for v in metrics.verdict.violations],
         },
         "late_rates_per_s": {
-            "predicted": None if (rates := predicted_late_rates(experiment)) is None else rates.tolist(),
+            "predicted": predicted_late_rates(experiment, trajectory),
             "measured": metrics.late_rates,
         },
         "phases": [

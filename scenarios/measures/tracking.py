@@ -7,17 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from formation import agents, asymptotic_rates, end_configuration, fit_similarity, pair_ends, wrap
+from formation import agents, end_configuration, fit_similarity, pair_ends, wrap
 from scenarios.definition.experiment import Experiment
 from scenarios.simulation.trajectory import Trajectory
 
 Real = NDArray[np.float64]
-
-FIT_NEAR, FIT_FAR = 1e-7, 2e-2
-"""Metres between which a distance is taken to decay with its late rate: below the far transient, above rounding."""
-
-FIT_ROWS = 20
-"""Fewest recorded states that a rate is fitted to."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,42 +62,3 @@ def track(experiment: Experiment, trajectory: Trajectory) -> Tracking:
         translation=np.linalg.norm(centroid - centroid_0, axis=-1),
         distances=np.linalg.norm(trajectory.points - wanted, axis=-1),
     )
-
-
-def predicted_late_rates(experiment: Experiment) -> Real | None:
-    """(n - 2,) the rate, 1/s, at which each follower's distance decays in the end; None but for the angle law.
-
-    The slowest of the follower itself, of all that it depends on, and of a first follower steered by displacement.
-    """
-    if experiment.scenario.law.name != "angle":
-        return None
-    rates = asymptotic_rates(experiment.target)
-    return np.minimum(rates, 1.0) if experiment.first_follower == "displacement" else rates
-
-
-def measured_late_rates(experiment: Experiment, trajectory: Trajectory) -> list[float | None]:
-    """The late decay rate, 1/s, of each follower's distance from where agents 1 and 2 put it, in the last phase.
-
-    Agents 1 and 2 count where they are, not where they should be: contact may have moved them. None where too few
-    states lie between :data:`FIT_NEAR` and :data:`FIT_FAR`.
-    """
-    last = trajectory.phase == trajectory.phase[-1]
-    points, t = trajectory.points[last], trajectory.t[last]
-    leader, first = points[-1, : agents.FIRST_ORDINARY]
-    if (leader == first).all() or not np.isfinite(points).all():
-        return [None] * (experiment.n - agents.FIRST_ORDINARY)
-    velocity = np.array(experiment.phases[trajectory.phase[-1]].velocity)
-    places = end_configuration(experiment.formation, leader, first) - ((t[-1] - t)[:, None] * velocity)[:, None, :]
-    distances = np.linalg.norm(points - places, axis=-1)[:, agents.FIRST_ORDINARY :]
-    return [_late_rate(t, distance) for distance in distances.T]
-
-
-def _late_rate(t: Real, distance: Real) -> float | None:
-    far = np.flatnonzero(distance > FIT_FAR)
-    begin = far[-1] + 1 if far.size else 0
-    near = np.flatnonzero(distance[begin:] < FIT_NEAR)
-    end = begin + near[0] if near.size else len(t)
-    if end - begin < FIT_ROWS:
-        return None
-    slope = np.polyfit(t[begin:end] - t[begin], np.log(distance[begin:end]), 1)[0]
-    return float(-slope)

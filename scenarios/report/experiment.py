@@ -12,8 +12,8 @@ from formation import agents, collision_margins, decay_rates, end_similarity, ne
 from scenarios.definition.experiment import Experiment
 from scenarios.documents import cell
 from scenarios.measures.forecast import NEAR, PhaseForecast, forecast
+from scenarios.measures.late_rates import expected_late_rates
 from scenarios.measures.remarks import remarks
-from scenarios.measures.tracking import predicted_late_rates
 from scenarios.report.cells import NO_PREDICTION, digits, place
 from scenarios.terminal import new_table
 
@@ -78,7 +78,7 @@ def _print_graph(console: Console, experiment: Experiment, start: Any) -> None:
 def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any) -> None:
     target = experiment.target
     graph = target.graph
-    rates, late = decay_rates(target), predicted_late_rates(experiment)
+    rates, late = decay_rates(target), expected_late_rates(experiment, start)
     margins = collision_margins(target, start, end)
     at_rest = len(experiment.phases) == 1 and not any(experiment.phases[0].velocity)
     still = at_rest and experiment.predicted  # the premise of Lemma 3
@@ -101,7 +101,7 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
             cells = [
                 f"{np.degrees(target.follower_angles[follower]):.2f}",
                 digits(rates[follower], 4),
-                "-" if late is None else digits(late[follower], 4),
+                "-" if late is None or (rate := late[follower]) is None else digits(rate, 4),
                 f"{margins[follower]:+.3f}" if still else "-",
             ]
         table.add_row(

@@ -18,8 +18,14 @@ from formation import (
     random_target,
     settling_bound,
 )
-from formation.analysis.closed_loop import matrix_exponential
+from formation.analysis.cascade import exponential
 from formation.plane import as_complex, as_vectors
+
+
+def matrix_exponential(matrix: np.ndarray) -> np.ndarray:
+    """exp(matrix)."""
+    return exponential(lambda states: matrix @ states, len(matrix), float(np.abs(matrix).sum(axis=1).max()))
+
 
 SEPARATED = 1.1
 """The slowest rate's fit is compared where the next one is faster by this factor."""

@@ -1,0 +1,104 @@
+"""The exact motion of ideal agents under eq. (man), instant by instant, and that of commands held over a period.
+
+Relative to the leader the followers are a linear cascade that the displacement e(t) = p_2 - p_1 drives, whatever
+moves it:
+
+    dq_F/dt = M_F q_F + b e(t),     q_F(t + h) = e^{M_F h} q_F(t) + int_0^h e^{M_F (h - s)} b e(t + s) ds.
+
+With e known in closed form the integral is a Gauss-Legendre sum, exact to rounding.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import count, islice
+
+import numpy as np
+
+from formation import agents
+from formation.analysis.cascade import Cascade
+from formation.analysis.first_follower import Motion, motion
+from formation.laws.first_follower import EDGE_LAWS
+from formation.maneuver import Phase
+from formation.plane import Complex, Real, as_vectors
+
+NODES = 8
+LONGEST_STEP = 0.1
+"""Seconds: over this, and over no more than the nearest singularity of e(t) is away, the nodes err below rounding."""
+
+ROW = agents.FIRST_ORDINARY
+
+
+def follow(cascade: Cascade, start: Complex, first: Motion, step: float) -> Iterator[Complex]:
+    """Where the agents are relative to the leader, complex metres (n, ...), at time 0 and every ``step`` seconds.
+
+    Args:
+        cascade: of the followers; the first follower's own rate is not used.
+        start: (n, ...) positions at time 0, complex metres; further dimensions are so many motions at once.
+        first: e_12(t) (...), the displacement of agent 2 from agent 1.
+        step: seconds.
+    """
+    stretches: dict[int, _Stretch] = {}
+    q = start - start[agents.LEADER]
+    for index in count(1):
+        yield q
+        begin, state = step * (index - 1), q[ROW:]
+        parts = int(np.ceil(step / min(LONGEST_STEP, first.nearest(begin))))
+        if parts not in stretches:
+            stretches[parts] = _Stretch.over(cascade, step / parts)
+        for part in range(parts):
+            state = stretches[parts].advance(state, first, begin + part * step / parts)
+        q = np.empty_like(q)
+        q[agents.LEADER], q[agents.FIRST_FOLLOWER], q[ROW:] = 0.0, first.at(np.asarray(step * index)), state
+
+
+@dataclass(frozen=True, eq=False)
+class _Stretch:
+    """One exact step of the followers: e^{M h}, and what each node of the quadrature adds."""
+
+    forward: Complex
+    nodes: Real
+    kernels: Complex
+
+    @classmethod
+    def over(cls, cascade: Cascade, h: float) -> _Stretch:
+        roots, weights = np.polynomial.legendre.leggauss(NODES)
+        nodes = (roots + 1.0) * (h / 2.0)
+        driven = cascade.whole[ROW:, agents.FIRST_FOLLOWER]
+        kernels = np.stack([cascade.exponential(h - node)[ROW:, ROW:] @ driven for node in nodes], axis=1)
+        return cls(cascade.exponential(h)[ROW:, ROW:], nodes, kernels * (weights * (h / 2.0)))
+
+    def advance(self, state: Complex, first: Motion, begin: float) -> Complex:
+        """The followers (n - 2, ...) after the stretch that begins at ``begin`` seconds."""
+        times = begin + self.nodes.reshape(-1, *(1,) * (state.ndim - 1))
+        return self.forward @ state + self.kernels @ first.at(times)
+
+
+def ideal(cascade: Cascade, start: Complex, phase: Phase, first_follower: str, step: float) -> Iterator[Complex]:
+    """Where a phase takes ideal agents from ``start`` (n, ...), complex metres, at its start and every ``step`` s."""
+    leader = start[agents.LEADER]
+    first = motion(first_follower, start[agents.FIRST_FOLLOWER] - leader, phase.displacement)
+    for index, q in enumerate(follow(cascade, start, first, step)):
+        yield q + (leader + complex(*phase.velocity) * (step * index))
+
+
+def held(cascade: Cascade, start: Complex, phase: Phase, first_follower: str, period: float) -> Iterator[Complex]:
+    """The same where each command is held over a control period, seconds, as a digital controller does.
+
+    The points go straight while a command is held: those of wheeled robots do so once they are slow.
+    """
+    delta = phase.displacement
+    law = EDGE_LAWS["stationary" if delta is None else first_follower]
+    shape = Cascade(cascade.graph, cascade.weights, np.concatenate([[0.0], cascade.rates[1:]]))
+    p = start
+    while True:
+        yield p
+        u = shape.apply(p)
+        u[agents.FIRST_FOLLOWER] = law(p[agents.FIRST_FOLLOWER] - p[agents.LEADER], np.asarray(delta or 0j))
+        p = p + period * (u + complex(*phase.velocity))
+
+
+def points(states: Iterator[Complex], steps: int) -> Real:
+    """(steps + 1, n, 2) the first states of one motion, metres."""
+    return as_vectors(np.stack(list(islice(states, steps + 1))))

@@ -1,0 +1,57 @@
+"""What the theory makes of an experiment: its closed loop, and the exact motion of its agents."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from formation import agents
+from formation.analysis import first_follower
+from formation.analysis.cascade import Cascade
+from formation.analysis.exact import held, ideal, points
+from formation.plane import Complex, as_complex
+from scenarios.definition.experiment import Experiment
+from scenarios.simulation.loop import periods
+
+Real = NDArray[np.float64]
+
+
+def has_closed_loop(experiment: Experiment) -> bool:
+    """Whether the loop is the cascade of eq. (man): the angle law, however its first follower is steered."""
+    return experiment.scenario.law.name == "angle"
+
+
+def moves_exactly(experiment: Experiment) -> bool:
+    """Whether ideal agents move as :func:`motion` says: all active at once, v_r known to all, nothing delayed."""
+    scenario = experiment.scenario
+    return (
+        has_closed_loop(experiment)
+        and scenario.law.activation == "simultaneous"
+        and experiment.estimator is None
+        and not scenario.sensor.delay_periods
+    )
+
+
+def cascade(experiment: Experiment, start: Real, index: int) -> Cascade:
+    """The closed loop near the end of a phase that begins with agents at ``start`` (n, 2), metres."""
+    leader, first = as_complex(start)[: agents.FIRST_ORDINARY]
+    delta = experiment.phases[index].displacement
+    return Cascade.of(experiment.target, first_follower.rate(experiment.first_follower, first - leader, delta))
+
+
+def motion(experiment: Experiment, start: Real, index: int) -> Real:
+    """(T, n, 2) where a phase takes the agents from ``start`` (n, 2), metres, at its start and after every period."""
+    count, period = periods(experiment.phases[index], experiment.scenario.plant.control_period_s)
+    return points(states(experiment, as_complex(start), index, period), count)
+
+
+def states(experiment: Experiment, start: Complex, index: int, period: float) -> Iterator[Complex]:
+    """The motion of a phase from ``start`` (n, ...), complex metres, state by state, every ``period`` seconds.
+
+    Commands are held over a period where the plant holds them; neither wheels nor a filter change them.
+    """
+    move = ideal if experiment.plant == "single_integrator" else held
+    loop = Cascade.of(experiment.target)
+    return move(loop, start, experiment.phases[index], experiment.first_follower, period)

@@ -1,0 +1,162 @@
+"""The exact motion: the first follower in closed form, the cascade that it drives, commands that are held or change."""
+
+from itertools import islice
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from formation import EDGE_LAWS, AngleLaw, Phase, TargetFormation, VelocityEstimator, random_target
+from formation.analysis import first_follower, lags
+from formation.analysis.cascade import Cascade
+from formation.analysis.exact import follow, held, ideal, points
+from formation.plane import as_complex, as_vectors
+
+SEEDS = st.integers(0, 2**32 - 1)
+LAWS = ["stationary", "displacement", "distance", "bearing"]
+PHASE = Phase("p", 3.0, (0.05, -0.02), (0.3, 0.4))
+
+
+def velocity(target: TargetFormation, law: str, p: np.ndarray, phase: Phase = PHASE) -> np.ndarray:
+    """What eq. (man) asks of agents at p (n, 2)."""
+    edges = target.graph.edges
+    compass = np.tile([1.0, 0.0], (len(p), 1))
+    return AngleLaw(target, law)(p[edges[:, 1]] - p[edges[:, 0]], compass, np.array(phase.delta)) + phase.velocity
+
+
+def runge_kutta(target: TargetFormation, law: str, p: np.ndarray, h: float, steps: int) -> np.ndarray:
+    states = [p]
+    for _ in range(steps):
+        k1 = velocity(target, law, p)
+        k2 = velocity(target, law, p + h / 2 * k1)
+        k3 = velocity(target, law, p + h / 2 * k2)
+        k4 = velocity(target, law, p + h * k3)
+        p = p + h / 6 * (k1 + 2 * (k2 + k3) + k4)
+        states.append(p)
+    return np.array(states)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@given(
+    start=st.complex_numbers(min_magnitude=0.1, max_magnitude=2.0),
+    length=st.floats(0.1, 2.0),
+    turn=st.floats(-3.0, 3.0),
+    t=st.floats(0.0, 20.0),
+)
+def test_the_first_followers_motion_solves_its_law(
+    law: str, start: complex, length: float, turn: float, t: float
+) -> None:
+    delta = length * start / abs(start) * np.exp(1j * turn)
+    e, h = first_follower.motion(law, start, delta).at, 1e-5
+    slope = (e(np.array(t + h)) - e(np.array(t - h))) / (2 * h)
+    asked = EDGE_LAWS[law](e(np.array([t])), np.array(delta))[0]
+    assert abs(slope - asked) < 1e-6 * max(1.0, 1.0 / abs(start), abs(delta) ** 3, abs(start) ** 3)
+    assert e(np.array(0.0)) == pytest.approx(start, abs=1e-12)
+
+
+@pytest.mark.parametrize("law", ["displacement", "distance", "bearing"])
+@given(start=st.floats(0.3, 1.0), length=st.floats(0.3, 1.0), turn=st.floats(-2.0, 2.0))
+def test_the_first_follower_nears_its_end_at_its_late_rate(law: str, start: float, length: float, turn: float) -> None:
+    e_0, delta = complex(start), length * np.exp(1j * turn)
+    e, rate = first_follower.motion(law, e_0, delta).at, first_follower.rate(law, e_0, delta)
+    end, late = e(np.array(40.0 / rate)), np.array([7.0, 8.0]) / rate
+    assume(abs(e_0 - end) > 1e-2)
+    earlier, later = np.abs(e(late) - end)
+    assert np.log(earlier / later) == pytest.approx(1.0, abs=0.02)
+
+
+def test_the_bearing_law_leaves_only_the_antipode_where_it_is_and_the_distance_law_only_one_place() -> None:
+    t = np.array([0.0, 50.0])
+    opposite = first_follower.motion("bearing", -1.0 + 0j, 1.0 + 0j).at(t[:1])
+    assert EDGE_LAWS["bearing"](opposite, np.array(1.0 + 0j)) == pytest.approx(0.0, abs=1e-12)
+    nearly = first_follower.motion("bearing", np.exp(1j * (np.pi - 1e-3)), 1.0 + 0j).at(t)
+    assert abs(nearly[1] - 1.0) < 1e-12
+    assert (first_follower.motion("distance", 0j, 1.0 + 0j).at(t) == 0.0).all()
+    assert first_follower.motion("distance", 1e-6 + 0j, 1.0 + 0j).at(t)[1] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@settings(max_examples=8)
+@given(seed=SEEDS)
+def test_the_exact_motion_is_where_fine_runge_kutta_steps_of_the_law_lead(law: str, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    target = random_target(7, rng)
+    start = rng.normal(size=(7, 2))
+    start[1] = start[0] + as_vectors(rng.uniform(0.3, 1.5) * np.exp(2j * np.pi * rng.uniform()))
+    loop = Cascade.of(target)
+    exact = points(ideal(loop, as_complex(start), PHASE, law, 0.25), 8)
+    fine = runge_kutta(target, law, start, 0.005, 400)[::50]
+    np.testing.assert_allclose(exact, fine, atol=1e-8 * max(1.0, np.abs(loop.pulls).max() ** 5))
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_held_commands_take_the_points_straight(law: str) -> None:
+    rng = np.random.default_rng(5)
+    target = random_target(9, rng)
+    p = rng.normal(size=(9, 2))
+    for state in islice(held(Cascade.of(target), as_complex(p), PHASE, law, 0.033), 20):
+        np.testing.assert_allclose(as_vectors(state), p, atol=1e-11)
+        p = p + 0.033 * velocity(target, law, p)
+
+
+def test_a_first_follower_from_afar_by_distance_is_followed_exactly() -> None:
+    """Its motion has a singularity just before time 0."""
+    rng = np.random.default_rng(8)
+    target = random_target(5, rng)
+    start = rng.normal(size=(5, 2))
+    start[1] = start[0] + [4.0, 0.0]
+    exact = points(ideal(Cascade.of(target), as_complex(start), PHASE, "distance", 0.1), 3)
+    fine = runge_kutta(target, "distance", start, 0.0005, 600)[::200]
+    np.testing.assert_allclose(exact, fine, atol=1e-9)
+
+
+def test_many_motions_at_once_are_the_single_ones() -> None:
+    rng = np.random.default_rng(6)
+    target = random_target(6, rng)
+    loop, starts = Cascade.of(target), as_complex(rng.normal(size=(6, 3, 2)))
+    for move in (ideal, held):
+        for law in LAWS:
+            together = list(islice(move(loop, starts, PHASE, law, 0.05), 10))[-1]
+            alone = [list(islice(move(loop, starts[:, c], PHASE, law, 0.05), 10))[-1] for c in range(3)]
+            np.testing.assert_allclose(together, np.stack(alone, axis=1), atol=1e-12)
+
+
+@settings(max_examples=8)
+@given(seed=SEEDS, slope=st.complex_numbers(min_magnitude=0.01, max_magnitude=0.2))
+def test_behind_a_ramped_displacement_the_followers_lag_as_predicted(seed: int, slope: complex) -> None:
+    rng = np.random.default_rng(seed)
+    target = random_target(6, rng, min_angle=np.radians(30.0))
+    first = first_follower.ramped(0.5 + 0.1j, 0.3 - 0.2j, slope)
+    *_, late = islice(follow(Cascade.of(target), as_complex(rng.normal(size=(6, 2))), first, 0.1), 1501)
+    lag = late - lags.shares(target) * (0.3 - 0.2j + slope * 150.0)
+    np.testing.assert_allclose(lag, lags.ramp_lags(target, slope), atol=1e-9 * (1.0 + np.abs(lag).max()))
+
+
+@settings(max_examples=8)
+@given(seed=SEEDS, omega=st.floats(0.05, 1.0))
+def test_a_turning_displacement_shrinks_and_twists_the_shape_as_predicted(seed: int, omega: float) -> None:
+    rng = np.random.default_rng(seed)
+    target = random_target(6, rng, min_angle=np.radians(30.0))
+    delta = 0.4 + 0.3j
+    first = first_follower.turned(0.1 + 0.1j, delta, omega)
+    *_, late = islice(follow(Cascade.of(target), as_complex(rng.normal(size=(6, 2))), first, 0.1), 1501)
+    gains = lags.turning_gains(target, omega)
+    np.testing.assert_allclose(late, gains * delta * np.exp(1j * omega * 150.0), atol=1e-9 * np.abs(gains).max())
+    np.testing.assert_allclose(lags.turning_gains(target, 1e-9), lags.shares(target), atol=1e-6)
+
+
+def test_behind_a_ramped_velocity_spread_by_consensus_the_agents_lag_as_predicted() -> None:
+    target = random_target(6, np.random.default_rng(2), min_angle=np.radians(30.0))
+    edges, kappa, slope, h = target.graph.edges, 2.0, np.array([0.003, -0.001]), 0.01
+    estimator, estimates = VelocityEstimator(6, edges, kappa), np.zeros((6, 2))
+    loop, delta = Cascade.of(target, 1.0), 0.3 + 0.4j
+    q = lags.shares(target) * delta
+    for step in range(5_000):
+        estimates = estimator.step(estimates, slope * (step * h), h)
+        pull = loop.apply(q)
+        pull[1] = delta - q[1]
+        pull += as_complex(estimates) - as_complex(estimates)[0]
+        q = q + h * pull
+    predicted = lags.velocity_lags(target, edges, kappa, complex(*slope))
+    np.testing.assert_allclose(q - lags.shares(target) * delta, predicted, rtol=0.02, atol=1e-6)
