@@ -11,6 +11,7 @@ import hypothesis
 import numpy as np
 import pytest
 
+from formation import SensingGraph, TargetFormation
 from robots.worlds import NOTHING
 from scenarios.cli import DONE, main
 from scenarios.definition.experiment import Experiment, build, open_experiment
@@ -36,6 +37,24 @@ POLL = 0.05
 def shape() -> Experiment:
     """The paper's shape experiment, as the library has it."""
     return open_experiment("shape")
+
+
+@pytest.fixture(scope="session")
+def paper() -> TargetFormation:
+    """The paper's shape on the paper's graph."""
+    places = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.5, -0.5], [-0.5, 1.5]])
+    return TargetFormation(SensingGraph(np.array([[0, 1], [1, 2], [0, 3], [0, 3]])), places)
+
+
+@pytest.fixture(scope="session")
+def strip() -> Callable[[int], TargetFormation]:
+    """Makes the equilateral strip of n agents, each sensing the two before it: a cascade as long as can be."""
+
+    def make(n: int) -> TargetFormation:
+        places = np.array([[0.5 * k, (k % 2) * np.sqrt(3.0) / 2.0] for k in range(n)])
+        return TargetFormation(SensingGraph(np.array([[k - 2, k - 1] for k in range(2, n)])), places)
+
+    return make
 
 
 @pytest.fixture(scope="session")
