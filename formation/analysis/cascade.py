@@ -109,8 +109,24 @@ class Cascade:
 
     def exponential(self, duration: float) -> Complex:
         """(n, n) exp(matrix of all agents times ``duration`` seconds); a term of its series costs n^2."""
-        norm = float(np.abs(self.whole).sum(axis=1).max())
-        return exponential(lambda states: self.apply(states) * duration, self.n, duration * norm)
+        return exponential(lambda states: self.apply(states) * duration, self.n, duration * self.norm)
+
+    def act(self, states: Complex, duration: float) -> Complex:
+        """exp(matrix of all agents times ``duration`` seconds) times states (n, ...), by series and small steps."""
+        norm = duration * self.norm
+        parts = max(1, int(np.ceil(norm)))
+        for _ in range(parts):
+            term, sum_ = states, states.copy()
+            for order in range(1, TAYLOR_TERMS + 1):
+                term = self.apply(term) * (duration / (parts * order))
+                sum_ += term
+            states = sum_
+        return states
+
+    @cached_property
+    def norm(self) -> float:
+        """The largest sum of absolute values in a row of the matrix, 1/s."""
+        return float((self.rates[1:] * (1.0 + np.abs(self.pulls).sum(axis=1))).max(initial=self.rates[0]))
 
     @cached_property
     def late_rates(self) -> Real:

@@ -14,6 +14,9 @@ from formation.target import TargetFormation
 FIRST_FOLLOWER_RATE = {"stationary": 0.0, "displacement": 1.0}
 """r_2, 1/s, of the first-follower laws that are linear."""
 
+DENSE = 200
+"""Agents up to which one full matrix carries the errors on; from there on it is slower than what its rows hold."""
+
 
 def closed_loop_matrix(target: TargetFormation, first_follower: str = "stationary") -> Complex:
     """(n - 1, n - 1) the matrix of the error dynamics of agents 2..n, 1/s; see :mod:`formation.analysis.cascade`.
@@ -82,10 +85,11 @@ def arrival(
 
 
 def _decay(cascade: Cascade, errors: Complex, resolution: float) -> Iterator[Complex]:
-    step = cascade.exponential(resolution)
+    """The errors every ``resolution`` seconds: by one matrix, or for many agents by its series, n instead of n^2."""
+    step = cascade.exponential(resolution) if cascade.n <= DENSE else None
     while True:
         yield errors
-        errors = step @ errors
+        errors = cascade.act(errors, resolution) if step is None else step @ errors
 
 
 def asymptotic_rates(target: TargetFormation, first_rate: float = 0.0) -> Real:
