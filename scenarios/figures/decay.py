@@ -66,7 +66,9 @@ def _legend(experiment: Experiment, slowest: float | None) -> list[Line2D]:
     if slowest is not None:
         handles.append(Line2D([], [], color=INK, linewidth=0.8, linestyle=":", label=f"late, {slowest:.2f} /s"))
     if experiment.n - agents.FIRST_ORDINARY <= MANY:
-        for row, rate in zip(experiment.target.graph.followers.tolist(), decay_rates(experiment.target).tolist(), strict=True):
+        for row, rate in zip(
+            experiment.target.graph.followers.tolist(), decay_rates(experiment.target).tolist(), strict=True
+        ):
             text = f"agent {agents.number(row)}, {rate:.2f} /s"
             handles.append(Line2D([], [], color=agent_colour(row), linewidth=1.4, label=text))
     return handles

@@ -107,7 +107,8 @@ def _places(experiment: Experiment, t: Real, points: Real, velocity: tuple[float
     leader, first = points[-1, : agents.FIRST_ORDINARY]
     if (leader == first).all() or not np.isfinite(points).all():
         return None
-    return end_configuration(experiment.formation, leader, first) - ((t[-1] - t)[:, None] * np.array(velocity))[:, None, :]
+    ahead = (t[-1] - t)[:, None] * np.array(velocity)
+    return end_configuration(experiment.formation, leader, first) - ahead[:, None, :]
 
 
 def _windows(experiment: Experiment, points: Real, places: Real) -> list[tuple[Real, Window | None]]:
