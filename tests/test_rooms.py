@@ -37,7 +37,7 @@ HEAVY_HOMES = {
     "matplotlib": ("scenarios.figures",),
     "PIL": ("scenarios.figures",),
     "rerun": ("scenarios.recording",),
-    "numba": ("robots", "scenarios.simulation"),
+    "numba": ("robots", "scenarios.simulation", "formation.design.kernel"),
     "pymunk": ("robots.worlds",),
     "daqp": ("robots.safety",),
     **dict.fromkeys(("pyarrow", "scipy", "pandas", "dask", "distributed"), ()),

@@ -1,3 +1,16 @@
 """What theory says before anything moves: ends, rates, the exact closed loop, linearisations. Moves nothing."""
 
-__all__ = ["closed_loop", "flow", "linearisation", "prediction"]
+__all__ = [
+    "amplification",
+    "cascade",
+    "closed_loop",
+    "collisions",
+    "exact",
+    "first_follower",
+    "flow",
+    "lags",
+    "linearisation",
+    "margins",
+    "noise",
+    "prediction",
+]
