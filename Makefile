@@ -8,7 +8,7 @@ SCENARIO ?= shape
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install run test quick lint check bench fuzz figures evidence screenshots clean
+.PHONY: help install run test quick lint check bench figures fuzz kills pairs evidence screenshots clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -56,8 +56,15 @@ figures: $(STAMP) ## draw the figures of the documents, the film included
 	$(BIN)/formation animate runs/figures/maneuver-testbed --speed 12 --fps 12
 	cp runs/figures/maneuver-testbed/animation.gif docs/images/maneuver-testbed.gif
 
-fuzz: $(STAMP) ## stop 20 sweeps at random moments, continue them, and compare (about 15 minutes)
+fuzz: $(STAMP) ## 8,000 mutants of scenarios, run folders and options (about 15 minutes)
+	$(BIN)/python -m tests.fuzz
+
+kills: $(STAMP) ## 60 commands killed at random moments, 20 sweeps stopped and continued (about 20 minutes)
+	$(BIN)/python -m tests.fuzz.kills
 	$(BIN)/python tests/fuzz/test_stopped_sweeps.py
+
+pairs: $(STAMP) ## two of every writing command into one place at once: one is refused, or both are whole
+	$(BIN)/python -m tests.fuzz.pairs
 
 evidence: $(STAMP) ## the Monte Carlo evidence over all seeds, printed (about 20 minutes)
 	EVIDENCE_SEEDS=500 $(BIN)/pytest tests/evidence -q -n auto --dist load -rP

@@ -219,7 +219,7 @@ def _explain(error: ValidationError, data: Mapping[str, Any]) -> str:
     """One line for the first error: field, value and what was expected."""
     first = error.errors(include_url=False)[0]
     location = first["loc"]
-    field = _field_name(location, data)
+    field = _shortened(_field_name(location, data))
     if first["type"] == "extra_forbidden":
         parent = _model_at(Scenario, location[:-1])
         return f"{field}: unknown key, {did_you_mean(str(location[-1]), parent.model_fields)}"

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from pathlib import Path
 
 from scenarios.definition.reading import open_regular, read_regular
@@ -24,7 +25,7 @@ def write(path: Path, content: bytes) -> None:
 
 def damage(path: Path) -> str | None:
     """What is wrong with a recording, in one word; None for a whole one."""
-    if not path.is_file():
+    if not os.path.isfile(path):
         return "missing"
     try:
         digest = read_regular(_digest_of(path)).decode("ascii").split()[0]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from scenarios.storage import run_folder
 
 def is_recorded(source: str) -> bool:
     """Whether a scenario's name or path is that of a run folder or of the scenario in one; library names come first."""
-    return source not in library() and (Path(source).name == run_folder.SCENARIO or Path(source).is_dir())
+    return source not in library() and (Path(source).name == run_folder.SCENARIO or os.path.isdir(source))
 
 
 def open_again(source: str, changes: tuple[str, ...], duration: float | None) -> tuple[Experiment, int]:

@@ -136,7 +136,7 @@ def is_run(folder: Path) -> bool:
 
 
 def _looks_like_run(folder: Path) -> bool:
-    return (folder / RESULT).is_file() and (folder / TRAJECTORY).is_file()
+    return os.path.isfile(folder / RESULT) and os.path.isfile(folder / TRAJECTORY)  # of any path that can be given
 
 
 def read(folder: Path, under_way: bool = False) -> Run:
@@ -153,7 +153,7 @@ def read(folder: Path, under_way: bool = False) -> Run:
     from scenarios.definition.experiment import build
     from scenarios.storage import states
 
-    if not folder.exists():
+    if not os.path.exists(folder):
         raise InputError(f"{folder}: no such run folder")
     if not _looks_like_run(folder):
         raise InputError(f"{folder}: not a run folder, it holds no {RESULT} and {TRAJECTORY}")
@@ -174,7 +174,7 @@ def read(folder: Path, under_way: bool = False) -> Run:
         raise InputError(
             f"{folder / RESULT}: planned_duration_s: expected {planned:g}, got {result.planned_duration_s:g}"
         )
-    trajectory = states.read(folder / TRAJECTORY, experiment)
+    trajectory = states.read(folder / TRAJECTORY, experiment, result.seed)
     if trajectory.t[-1] != result.duration_s:
         raise InputError(
             f"{folder / TRAJECTORY}: t: expected {result.duration_s!r} s at the end as in {RESULT}, "

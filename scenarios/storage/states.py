@@ -22,11 +22,14 @@ from scenarios.simulation.trajectory import Trajectory
 
 REAL, INDEX, SMALL, FLAG = (np.dtype(kind) for kind in (np.float64, np.intp, np.int32, np.bool_))
 
+SAME_PLACE = 1e-9
+"""Metres between a start and the first state, which is computed from it."""
+
 NOT_NEGATIVE = ("intervention", "relaxation", "stuck")
 
 
-def read(path: Path, experiment: Experiment) -> Trajectory:
-    """The states of a run of that experiment.
+def read(path: Path, experiment: Experiment, seed: int) -> Trajectory:
+    """The states of the run of that experiment with that seed.
 
     Raises:
         InputError: the file is missing or damaged, or a field has another shape, type or range than a run's.
@@ -43,6 +46,8 @@ def read(path: Path, experiment: Experiment) -> Trajectory:
             states[name] = _array(path, archive, name)
     trajectory = Trajectory(**{field.name: states[field.name] for field in fields(Trajectory)})
     _check_values(path, experiment, trajectory)
+    if not np.allclose(trajectory.points[0], experiment.initial_points(seed), rtol=1e-12, atol=SAME_PLACE):
+        raise InputError(f"{path}: points: expected to begin where the scenario and seed {seed} say")
     return trajectory
 
 

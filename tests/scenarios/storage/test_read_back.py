@@ -193,6 +193,7 @@ STATES: dict[str, tuple[dict[str, Any], str]] = {
     "a late start": ({"t": lambda a: a + 1.0}, "t: expected times that begin at 0"),
     "nan in a pose": ({"poses": lambda a: a * np.nan}, "poses: expected finite numbers"),
     "an infinite point": ({"points": lambda a: a + np.inf}, "points: expected finite numbers"),
+    "another start": ({"points": lambda a: a + 1e-3}, "points: expected to begin where the scenario and seed 3 say"),
     "a phase beyond": ({"phase": lambda a: a + 9}, "phase: expected integers from 0 to 0"),
     "a phase before": ({"phase": lambda a: a - 1}, "phase: expected integers from 0 to 0"),
     "contact with a stranger": ({"contact": lambda a: a + 100}, "contact: expected integers from -1 to 6"),
@@ -251,7 +252,7 @@ def test_pipes_devices_and_folders_in_the_place_of_files_are_refused_at_once(run
 def test_a_sound_file_of_another_run_is_told_by_the_manifest(runs: dict[str, Path], tmp_path: Path) -> None:
     folder = tmp_path / "run"
     shutil.copytree(runs["maneuver"], folder)
-    edit_states(folder / TRAJECTORY, points=lambda a: a + 1e-3)
+    edit_states(folder / TRAJECTORY, points=lambda a: a + 1e-3 * np.arange(len(a))[:, None, None])
     assert f"{folder / TRAJECTORY}: changed since the run wrote it" in refusal(folder)
     shutil.copy(runs["maneuver"] / TRAJECTORY, folder)
     edit_json(folder / RESULT, lambda content: content.update(outcome="converged"))
