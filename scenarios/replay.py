@@ -10,7 +10,7 @@ from rich.console import Console
 
 from scenarios.errors import plain
 from scenarios.recording import file, viewer
-from scenarios.storage import run_folder
+from scenarios.storage import run_folder, script_folder
 
 
 def replay(folders: Sequence[Path], web: bool, console: Console) -> None:
@@ -35,10 +35,11 @@ def recording_of(folder: Path, scratch: Path, console: Console) -> Path:
     wrong = file.damage(path)
     if wrong is None and run_folder.is_run(folder):
         return path
-    run = run_folder.read(folder)
-    from scenarios.recording.encode import encode_run
+    if not script_folder.is_script(folder):
+        run_folder.read(folder)  # says what is wrong before rerun is loaded
+    from scenarios.recording import content as encoding
 
-    content = encode_run(run)
+    content = encoding.recording_of(folder)
     try:
         file.write(path, content)
     except OSError as error:

@@ -6,17 +6,18 @@ import shutil
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from time import monotonic
 
 from rich.console import Console
 from rich.markup import escape
 from rich.measure import Measurement
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 LEFT = frozenset(
     ("scenario", "title", "angle", "agent", "senses", "phase", "plant", "law", "measures", "frame", "fixes")
     + ("key", "kind", "default", "meaning", "changes", "quantity", "result", "replay")
-    + ("check", "verdict", "remark")
+    + ("check", "verdict", "remark", "script", "differs")
 )
 """Columns of text; all others hold numbers and are aligned right."""
 
@@ -52,6 +53,23 @@ def progress_bar(console: Console, name: str) -> Iterator[Callable[[int, int], N
                 progress.update(task, completed=done, total=total)
 
         yield advance
+
+
+@contextmanager
+def open_ended(console: Console, name: str) -> Iterator[Callable[[str], None]]:
+    """A progress line for work whose end is not known; the block calls what it gets with what there is to say."""
+    columns = SpinnerColumn(), TextColumn("{task.description}"), TextColumn("{task.fields[said]}")
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task(escape(name), said="")
+        due = monotonic()
+
+        def say(text: str) -> None:
+            nonlocal due
+            if (now := monotonic()) >= due:
+                due = now + PROGRESS_INTERVAL
+                progress.update(task, said=text)
+
+        yield say
 
 
 def new_table(*columns: str, title: str | None = None) -> Table:

@@ -30,21 +30,21 @@ PACKAGES = [name for name, path in MODULES.items() if path.name == "__init__.py"
 
 ALLOWED = {
     "formation": {"formation", "numpy", "scipy", "numba"},
-    "robots": {"robots", "numpy", "pymunk", "numba", "daqp"},
+    "robots": {"robots", "numpy", "pymunk", "numba", "daqp", "matplotlib"},  # the last for what scripts draw
 }
 
 HEAVY_HOMES = {
-    "matplotlib": ("scenarios.figures",),
+    "matplotlib": ("scenarios.figures", "scenarios.simulation.script"),
     "PIL": ("scenarios.figures",),
     "rerun": ("scenarios.recording",),
     "numba": ("robots", "scenarios.simulation", "formation.design.kernel"),
     "pymunk": ("robots.worlds",),
-    "daqp": ("robots.safety",),
+    "daqp": ("robots.safety", "robots.rps"),
     **dict.fromkeys(("pyarrow", "scipy", "pandas", "dask", "distributed"), ()),
 }
 """Packages that take their time to load, and the rooms whose files may load them when they are imported themselves."""
 
-GROUND = {"__init__", "__main__", "documents", "errors", "one_run", "replay", "terminal"}
+GROUND = {"__init__", "__main__", "documents", "errors", "one_run", "one_script", "replay", "terminal"}
 """The files of ``scenarios/`` itself."""
 
 DENIALS = {"no", "not", "nothing", "nor"}

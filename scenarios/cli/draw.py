@@ -18,7 +18,12 @@ from scenarios.errors import plain
     show_default=True, help="May be given several times.",
 )  # fmt: skip
 def plot(run_folder: Path, out: Path | None, formats: tuple[str, ...]) -> None:
-    """Draw the paper's figures of RUN, the folder of a finished run."""
+    """Draw the paper's figures of RUN, the folder of a finished run; of a script's run, its overview."""
+    from scenarios.storage import script_folder
+
+    if script_folder.is_script(run_folder):
+        _plot_script(run_folder, out, formats)
+        return
     from scenarios.figures import names_for
     from scenarios.figures import plot as draw
     from scenarios.measures.metrics import measure
@@ -43,12 +48,30 @@ def animate(run_folder: Path, form: str, speed: float, fps: float, out: Path | N
     """Film RUN, the folder of a finished run, as a GIF or with ffmpeg as an MP4."""
     from scenarios.figures import animate as film
     from scenarios.measures.metrics import measure
+    from scenarios.storage import script_folder
     from scenarios.storage.run_folder import read
     from scenarios.terminal import new_console, progress_bar
 
+    console, path = new_console(), (out or run_folder) / f"animation.{form}"
+    if script_folder.is_script(run_folder):
+        from scenarios.figures.scripts.film import animate_script
+
+        with progress_bar(console, path.name) as advance:
+            animate_script(script_folder.read(run_folder), path, speed, fps, advance)
+        console.print(plain(str(path)), markup=False)
+        return
     finished = read(run_folder)
     experiment, trajectory = finished.experiment, finished.trajectory
-    console, path = new_console(), (out or run_folder) / f"animation.{form}"
     with progress_bar(console, path.name) as advance:
         film(experiment, trajectory, measure(experiment, trajectory), path, speed, fps, advance)
     console.print(plain(str(path)), markup=False)
+
+
+def _plot_script(run_folder: Path, out: Path | None, formats: tuple[str, ...]) -> None:
+    from scenarios.figures.scripts.overview import draw_overview
+    from scenarios.storage import script_folder
+    from scenarios.terminal import new_console
+
+    console = new_console()
+    for path in draw_overview(script_folder.read(run_folder), out or run_folder, formats):
+        console.print(plain(str(path)), markup=False)

@@ -7,7 +7,7 @@ import sys
 
 import click
 
-from scenarios.cli import draw, export, look, many, run, study
+from scenarios.cli import draw, export, look, many, run, script, study
 from scenarios.cli.exits import BAD_INPUT, INTERRUPTED
 from scenarios.errors import InputError, did_you_mean, plain
 
@@ -18,6 +18,7 @@ FAMILIES: tuple[tuple[click.Command, ...], ...] = (
     (many.sweep_command, many.check),
     (study.laws, study.audit, study.reproduce),
     (export.export,),
+    (script.script,),
 )
 """All commands, a family a file."""
 

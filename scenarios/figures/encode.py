@@ -6,9 +6,10 @@ import shutil
 import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import IO
+from typing import IO, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image
 
 from scenarios.definition.experiment import Experiment
@@ -51,10 +52,31 @@ def animate(
     fps: float,
     on_frame: OnFrame,
 ) -> None:
-    """Write the film of a run as ``path``, a .gif or .mp4 file.
+    """Write the film of a run as ``path``; see :func:`write_film`."""
+    write_film(
+        lambda: Film(experiment, trajectory, metrics, speed, fps), float(trajectory.t[-1]), path, speed, fps, on_frame
+    )
+
+
+class Reel(Protocol):
+    """What a film is made of; see :class:`scenarios.figures.film.Film`."""
+
+    rows: NDArray[np.intp]
+    size: tuple[int, int]
+
+    def frames(self) -> Iterator[Pixels]: ...
+
+    def last(self) -> Pixels: ...
+
+
+def write_film(
+    make: Callable[[], Reel], seconds: float, path: Path, speed: float, fps: float, on_frame: OnFrame
+) -> None:
+    """Write a film as ``path``, a .gif or .mp4 file.
 
     Args:
-        experiment, trajectory, metrics: of the run.
+        make: makes the frames, in the style of print.
+        seconds: that the run took.
         path: its suffix chooses the kind.
         speed: simulated seconds per second of film.
         fps: frames per second.
@@ -69,7 +91,7 @@ def animate(
     most, why = (GIF_FPS_LIMIT, ", which is what viewers of GIFs can show") if gif else (FPS_LIMIT, "")
     if not LEAST_FPS <= fps <= most:
         raise InputError(f"--fps: expected a number from {LEAST_FPS:g} to {most:g}{why}, got {fps:g}")
-    wanted = trajectory.t[-1] * fps / speed
+    wanted = seconds * fps / speed
     if not wanted <= MAX_FRAMES:
         raise InputError(
             f"--speed, --fps: expected at most {MAX_FRAMES} frames, {speed:g} and {fps:g} make {wanted:.3g}"
@@ -78,14 +100,14 @@ def animate(
     if not gif and ffmpeg is None:
         raise InputError("--format mp4: needs ffmpeg, which is not on the PATH; --format gif does not")
     with print_style(), replacing(path) as scratch:
-        film = Film(experiment, trajectory, metrics, speed, fps)
+        film = make()
         if ffmpeg is None:
             _gif(film, scratch, fps, on_frame)
         else:
             _mp4(film, scratch, fps, on_frame, ffmpeg)
 
 
-def _gif(film: Film, path: Path, fps: float, on_frame: OnFrame) -> None:
+def _gif(film: Reel, path: Path, fps: float, on_frame: OnFrame) -> None:
     total = len(film.rows)
     images = _reduced(film, on_frame)
     first = next(images)
@@ -99,7 +121,7 @@ def _gif(film: Film, path: Path, fps: float, on_frame: OnFrame) -> None:
         )
 
 
-def _reduced(film: Film, on_frame: OnFrame) -> Iterator[Image.Image]:
+def _reduced(film: Reel, on_frame: OnFrame) -> Iterator[Image.Image]:
     """The frames in one palette, that of the last and busiest frame."""
     total = len(film.rows)
     palette = _palette(film.last())
@@ -121,7 +143,7 @@ def _rgb(pixels: Pixels) -> Image.Image:
     return Image.fromarray(pixels[..., :3].copy())
 
 
-def _mp4(film: Film, path: Path, fps: float, on_frame: OnFrame, ffmpeg: str) -> None:
+def _mp4(film: Reel, path: Path, fps: float, on_frame: OnFrame, ffmpeg: str) -> None:
     width, height = film.size
     command = [ffmpeg, "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{width}x{height}"]
     command += ["-r", f"{fps:g}", "-i", "-", "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20"]
@@ -139,7 +161,7 @@ def _mp4(film: Film, path: Path, fps: float, on_frame: OnFrame, ffmpeg: str) -> 
         raise InputError(f"{path.name}: ffmpeg failed: {lines[-1]}")
 
 
-def _feed(film: Film, pipe: IO[bytes], fps: float, on_frame: OnFrame) -> None:
+def _feed(film: Reel, pipe: IO[bytes], fps: float, on_frame: OnFrame) -> None:
     """Write all frames, the last one repeated; ends early when ffmpeg closes the pipe, and then it says why itself."""
     total = len(film.rows)
     try:

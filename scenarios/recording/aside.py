@@ -17,8 +17,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, cast
 
-from scenarios.storage import run_folder
-
 
 class Encoder:
     """The process; a context manager that leaves none behind."""
@@ -59,10 +57,10 @@ class Encoder:
 def main() -> None:
     """Get ready, read the name of a run folder, write its recording."""
     gc.disable()  # what it makes is needed until it ends, so that searching for garbage is time lost
-    from scenarios.recording.encode import encode_run
+    from scenarios.recording.content import recording_of
 
     if folder := sys.stdin.buffer.read():
-        sys.stdout.buffer.write(encode_run(run_folder.read(Path(os.fsdecode(folder)), under_way=True)))
+        sys.stdout.buffer.write(recording_of(Path(os.fsdecode(folder)), under_way=True))
 
 
 if __name__ == "__main__":

@@ -5,6 +5,8 @@ Everything lies below one entity that mirrors y, because the viewer's second axi
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
@@ -41,8 +43,12 @@ UP = np.diag([1.0, -1.0, 1.0])
 
 
 def floor(recorder: Recorder, experiment: Experiment) -> None:
+    """The ground of the experiment's arena."""
+    ground(recorder, experiment.arena)
+
+
+def ground(recorder: Recorder, arena: Arena) -> None:
     """The arena's floor and walls with a labelled grid, and the Robotarium's floor where it is another one."""
-    arena = experiment.arena
     recorder.fixed(WORLD, rr.Transform3D(mat3x3=UP))
     recorder.fixed(
         FLOOR,
@@ -76,16 +82,21 @@ def obstacles(recorder: Recorder, experiment: Experiment) -> None:
 
 
 def bodies(recorder: Recorder, experiment: Experiment) -> None:
-    """Chassis, wheels, nose and number of each robot, in the frame of its axle's centre."""
-    fill, outline, wheels = _body(experiment.robot)
-    nose = [[experiment.nid.projection_distance, 0.0]]
-    for row in range(experiment.n):
-        colour, entity = style.agent_colour(row), _robot(row)
+    """The body of each robot, with its number."""
+    names = [str(agents.number(row)) for row in range(experiment.n)]
+    draw_bodies(recorder, experiment.robot, experiment.nid.projection_distance, names)
+
+
+def draw_bodies(recorder: Recorder, robot: RobotModel, point: float, names: Sequence[str]) -> None:
+    """Chassis, wheels, nose and name of each robot, in the frame of its axle's centre, which is ``point`` behind it."""
+    fill, outline, wheels = _body(robot)
+    nose = [[point, 0.0]]
+    for row, name in enumerate(names):
+        colour, entity = style.agent_colour(row), f"{ROBOTS}/{name}"
         paint = style.tint(colour, 0.3)
         recorder.fixed(f"{entity}/fill", rr.LineStrips2D(fill, colors=paint, radii=FILL, draw_order=9.0))
         recorder.fixed(f"{entity}/outline", rr.LineStrips2D(outline, colors=colour, radii=0.005, draw_order=10.0))
         recorder.fixed(f"{entity}/wheels", rr.LineStrips2D(wheels, colors=style.WHEEL, radii=0.009, draw_order=11.0))
-        name = str(agents.number(row))
         recorder.fixed(
             f"{entity}/point",
             rr.Points2D(nose, colors=style.TEXT, radii=0.012, labels=name, show_labels=True, draw_order=12.0),
@@ -94,16 +105,22 @@ def bodies(recorder: Recorder, experiment: Experiment) -> None:
 
 def poses(recorder: Recorder, piece: Piece) -> None:
     """Where each robot is and where it points."""
-    rows = _finite(piece.trajectory.poses)
-    states = piece.trajectory.poses[rows].swapaxes(0, 1)
+    names = [str(agents.number(row)) for row in range(piece.experiment.n)]
+    move_bodies(recorder, piece.t, piece.trajectory.poses, names)
+
+
+def move_bodies(recorder: Recorder, t: Real, poses: Real, names: Sequence[str]) -> None:
+    """Where robots with these names are at times t (T,): poses (T, n, 3)."""
+    rows = _finite(poses)
+    states = poses[rows].swapaxes(0, 1)
     translation = np.zeros(states.shape)
     translation[..., :2] = states[..., :2]
     half = states[..., 2] / 2.0
     turn = np.zeros((*half.shape, 4))
     turn[..., 2], turn[..., 3] = np.sin(half), np.cos(half)
-    for row in range(piece.experiment.n):
+    for row, name in enumerate(names):
         place = rr.Transform3D.columns(translation=translation[row], quaternion=turn[row])
-        recorder.columns(_robot(row), piece.t[rows], place)
+        recorder.columns(f"{ROBOTS}/{name}", t[rows], place)
 
 
 def sensing(recorder: Recorder, piece: Piece) -> None:
@@ -128,20 +145,30 @@ def sensing_style(recorder: Recorder, experiment: Experiment) -> None:
 
 
 def trails(recorder: Recorder, piece: Piece) -> None:
-    """The path of each projected point, as one short segment per agent and time; the view shows the latest ones."""
-    rows = _finite(piece.trajectory.points)
+    """The path of each projected point."""
+    draw_trails(recorder, piece.t, piece.trajectory.points)
+
+
+def draw_trails(recorder: Recorder, t: Real, points: Real) -> None:
+    """Paths of points (T, n, 2), as one short segment per robot and time; the view shows the latest ones."""
+    rows = _finite(points)
     if len(rows) < 2:
         return
-    stride = max(1, round(style.TRAIL_STEP / float(piece.t[rows[1]] - piece.t[rows[0]])))
+    stride = max(1, round(style.TRAIL_STEP / float(t[rows[1]] - t[rows[0]])))
     rows = np.unique(np.append(rows[::stride], rows[-1]))
-    points = piece.trajectory.points[rows]
-    recorder.columns(TRAILS, piece.t[rows[1:]], _strips(np.stack([points[:-1], points[1:]], axis=2)))
+    seen = points[rows]
+    recorder.columns(TRAILS, t[rows[1:]], _strips(np.stack([seen[:-1], seen[1:]], axis=2)))
 
 
 def trails_style(recorder: Recorder, experiment: Experiment) -> None:
     """Each in a shade of its agent's colour."""
-    shades = [style.tint(style.agent_colour(row), 0.55) for row in range(experiment.n)]
-    recorder.fixed(TRAILS, rr.LineStrips2D.from_fields(colors=shades, radii=[0.004] * experiment.n, draw_order=3.0))
+    shade_trails(recorder, experiment.n)
+
+
+def shade_trails(recorder: Recorder, n: int) -> None:
+    """Paths of n robots, each in a shade of its colour."""
+    shades = [style.tint(style.agent_colour(row), 0.55) for row in range(n)]
+    recorder.fixed(TRAILS, rr.LineStrips2D.from_fields(colors=shades, radii=[0.004] * n, draw_order=3.0))
 
 
 def prediction(recorder: Recorder, piece: Piece) -> None:
@@ -172,10 +199,6 @@ def prediction_style(recorder: Recorder, experiment: Experiment) -> None:
 def _finite(states: Real) -> Index:
     """Rows of states (T, n, k) that can be drawn: all but the last one of a run that diverged."""
     return np.flatnonzero(np.isfinite(states).all(axis=(1, 2)))
-
-
-def _robot(row: int) -> str:
-    return f"{ROBOTS}/{agents.number(row)}"
 
 
 def _closed(corners: Real) -> Single:

@@ -1,0 +1,111 @@
+"""The robots themselves: a world driven by twists of the axles, and all that happened in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robots.arena import ROBOTARIUM_FLOOR, Arena
+from robots.model import COLLISION_CENTRE, CONTROL_PERIOD, RobotModel
+from robots.nid import NearIdentityDiffeomorphism
+from robots.worlds import PLANTS, make_world
+
+Real = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+WHEELED = tuple(plant for plant in PLANTS if plant != "single_integrator")
+"""Plants that have wheels to command."""
+
+_NID = NearIdentityDiffeomorphism(COLLISION_CENTRE)  # worlds are driven by their projected points
+_FLOOR = Arena(ROBOTARIUM_FLOOR.x, ROBOTARIUM_FLOOR.y, walls=False)  # a wall would hide that a script drives off it
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """What happened, row 0 the start.
+
+    Attributes:
+        t: (T,) seconds.
+        poses: (T, N, 3) of the axles, metres and radians, headings not wrapped.
+        commands: (T, N, 2) v and omega as commanded for the period that ends at t, m/s and rad/s.
+        wheel_speeds: (T, N, 2) of the commands, rad/s, unclipped.
+        contacts: (T, N) whom each robot touched; see :class:`robots.worlds.World`.
+    """
+
+    t: Real
+    poses: Real
+    commands: Real
+    wheel_speeds: Real
+    contacts: Index
+
+
+class Simulation:
+    """N robots on the testbed's floor.
+
+    Args:
+        poses: (N, 3) at which they stand.
+        robot: what they are.
+        plant: one of :data:`WHEELED`.
+
+    Attributes:
+        motion: (N, 2) v and omega of the last period as the axles moved, m/s and rad/s.
+        turned: (N, 2) by how much the wheels turned in it, left and right, radians.
+    """
+
+    def __init__(self, poses: Real, robot: RobotModel, plant: str) -> None:
+        self._robot, self._plant = robot, plant
+        self.place(poses)
+
+    def place(self, poses: Real) -> None:
+        """Stand at poses (N, 3), with no past."""
+        self._world = make_world(
+            self._plant, _NID.project(poses), poses[:, 2], nid=_NID, robot=self._robot, saturation="clip", arena=_FLOOR
+        )
+        self.motion = np.zeros((len(poses), 2))
+        self.turned = np.zeros((len(poses), 2))
+        self._poses = [self._world.poses.copy()]
+        self._commands = [np.zeros((len(poses), 2))]
+        self._contacts = [self._world.contacts.copy()]
+
+    @property
+    def poses(self) -> Real:
+        """(N, 3) of the axles, headings not wrapped."""
+        return self._world.poses
+
+    @property
+    def steps(self) -> int:
+        """Periods since the start."""
+        return len(self._poses) - 1
+
+    def step(self, twist: Real) -> None:
+        """Advance by one control period at commanded twists (N, 2)."""
+        before, velocity = self._poses[-1], _NID.velocity(twist)
+        self._world.step(lambda points, headings: velocity, CONTROL_PERIOD)
+        after = self._world.poses.copy()
+        self.motion = _motion(before, after)
+        self.turned = CONTROL_PERIOD * self._world.wheel_speeds
+        self._poses.append(after)
+        self._commands.append(np.array(twist))
+        self._contacts.append(self._world.contacts.copy())
+
+    def recorded(self) -> Record:
+        """All that happened so far."""
+        steps = len(self._poses)  # rows of one moment: another thread may be stepping
+        commands = np.stack(self._commands[:steps])
+        return Record(
+            CONTROL_PERIOD * np.arange(steps, dtype=np.float64),
+            np.stack(self._poses[:steps]),
+            commands,
+            self._robot.drive.wheel_speeds(commands),
+            np.stack(self._contacts[:steps]),
+        )
+
+
+def _motion(before: Real, after: Real) -> Real:
+    """(N, 2) the constant twist along whose arc poses (N, 3) went forward from ``before`` to ``after``."""
+    way, turn = after[:, :2] - before[:, :2], after[:, 2] - before[:, 2]
+    middle = before[:, 2] + turn / 2.0
+    chord = way[:, 0] * np.cos(middle) + way[:, 1] * np.sin(middle)
+    return np.stack([chord / np.sinc(turn / (2.0 * np.pi)), turn], axis=1) / CONTROL_PERIOD

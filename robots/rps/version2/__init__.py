@@ -1,0 +1,12 @@
+"""The interface of ``rps`` 2.1 (2026), module by module; nothing that only version 1 has."""
+
+__all__ = [
+    "barrier_certificates",
+    "controllers",
+    "gternal_patch",
+    "graph",
+    "misc",
+    "robotarium",
+    "sensors",
+    "transformations",
+]
