@@ -17,7 +17,6 @@ from robots.model import CONTROL_PERIOD
 from robots.rps.robotarium import Robotarium
 from robots.rps.session import Session, Start
 from robots.rps.simulation import WHEELED
-from scenarios.definition.script_file import ScriptFile
 from scenarios.errors import InputError, did_you_mean
 from scenarios.measures.script_result import chosen, script_result
 from scenarios.recording import file as recording_file
@@ -27,6 +26,7 @@ from scenarios.report.script_printout import print_script, print_script_result
 from scenarios.simulation.script.execute import Ending, execute
 from scenarios.simulation.script.frames import FINAL_DOTS_PER_INCH, Camera, all_drawn, png
 from scenarios.simulation.script.screen import take_the_screen_away
+from scenarios.simulation.script.script_file import ScriptFile
 from scenarios.storage import run_folder, script_folder
 from scenarios.terminal import open_ended
 

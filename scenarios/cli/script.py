@@ -46,9 +46,9 @@ def script(
     It needs nothing of the public simulator: `import rps` gets ours, of its generation 1 or 2. Exit code 1 where it
     raises, or where the testbed would reject it.
     """
-    from scenarios.definition.script_file import read
     from scenarios.errors import InputError
     from scenarios.one_script import Settings, run_script
+    from scenarios.simulation.script.script_file import read
     from scenarios.terminal import new_console
 
     if driven and near:

@@ -11,9 +11,9 @@ from robots.rps.robotarium import Robotarium
 from robots.rps.simulation import Record
 from robots.testbed import Verdict, Violation, collision_centres, judge, separation
 from robots.worlds import NOTHING
-from scenarios.definition.script_file import ScriptFile
 from scenarios.measures.result import versions
 from scenarios.simulation.script.execute import Ending
+from scenarios.simulation.script.script_file import ScriptFile
 from scenarios.storage.script_folder import KIND
 
 SCHEMA_VERSION = 1

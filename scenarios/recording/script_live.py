@@ -11,10 +11,10 @@ import rerun as rr
 from robots.model import CONTROL_PERIOD
 from robots.rps.robotarium import Robotarium
 from robots.rps.simulation import Record
-from scenarios.definition.script_file import ScriptFile
 from scenarios.recording.live import FLUSH, FRAME
 from scenarios.recording.recorder import Recorder, open_stream
 from scenarios.recording.script import layout, send_motion, send_setup
+from scenarios.simulation.script.script_file import ScriptFile
 
 
 class ScriptView:

@@ -9,8 +9,8 @@ from rich.console import Console
 from rich.markup import escape
 
 from robots.rps.simulation import Record
-from scenarios.definition.script_file import ScriptFile
 from scenarios.measures.script_result import OUTCOMES, describe
+from scenarios.simulation.script.script_file import ScriptFile
 from scenarios.terminal import new_table, print_table
 
 MOST_ROWS = 12

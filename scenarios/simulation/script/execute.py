@@ -22,9 +22,9 @@ from robots.model import CONTROL_PERIOD
 from robots.rps.hook import serving
 from robots.rps.robotarium import Robotarium
 from robots.rps.session import Session, during
-from scenarios.definition.script_file import ScriptFile
 from scenarios.simulation.script.clock import Clock
 from scenarios.simulation.script.hints import hint
+from scenarios.simulation.script.script_file import ScriptFile
 
 Outcome = Literal["ended", "exited", "raised", "interrupted", "stopped"]
 
