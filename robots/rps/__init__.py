@@ -9,4 +9,18 @@ from 0, as the scripts index them.
 of runs and recordings are not made here.
 """
 
-__all__ = ["hook", "robotarium", "session", "version1", "version2"]
+__all__ = [
+    "certificates",
+    "columns",
+    "constants",
+    "distances",
+    "hook",
+    "inertial",
+    "picture",
+    "robotarium",
+    "session",
+    "simulation",
+    "starts",
+    "version1",
+    "version2",
+]

@@ -8,6 +8,7 @@ __all__ = [
     "remarks",
     "result",
     "safety_result",
+    "script_result",
     "theory",
     "tracking",
     "window",

@@ -3,4 +3,17 @@
 Nothing that loads rerun is imported before a recording is asked for: rerun takes its time.
 """
 
-__all__ = ["aside", "encode", "file", "live", "piece", "recorder", "streams", "viewer", "views"]
+__all__ = [
+    "aside",
+    "content",
+    "encode",
+    "file",
+    "live",
+    "piece",
+    "recorder",
+    "script",
+    "script_live",
+    "streams",
+    "viewer",
+    "views",
+]

@@ -3,8 +3,8 @@
 __all__ = [
     "barrier_certificates",
     "controllers",
-    "gternal_patch",
     "graph",
+    "gternal_patch",
     "misc",
     "robotarium",
     "sensors",
