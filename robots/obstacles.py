@@ -116,6 +116,6 @@ def _counter_clockwise(v: Real) -> Real:
     if (turn < 0.0).all():
         return _counter_clockwise(v[::-1].copy())
     angle = np.arctan2(turn, (edge * after).sum(axis=1)).sum()
-    if not (turn > 0.0).all() or angle > 3.0 * np.pi:
+    if not (turn > 0.0).all() or angle > 3.0 * np.pi or not (edge**2).sum(axis=1).all():
         raise ValueError(f"a polygon must be strictly convex without crossing itself, got {v.tolist()}")
     return v

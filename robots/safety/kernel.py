@@ -30,6 +30,7 @@ WHEEL_ROWS = 4
 _PARALLEL = 1e-12  # sine of the angle between two rows that are taken as parallel
 _TIGHT = 1e-12  # m/s by which rounding may break a row
 _RELAXED = 1e-9  # m/s below which a relaxation is rounding
+_MOST = 1e6  # m/s: no wish and no row counts for more, so that all sums and quotients of them are finite
 
 
 class Constants(NamedTuple):
@@ -134,7 +135,7 @@ def _least_relaxation(
         ax, ay, b = rows[i, 0], rows[i, 1], rows[i, 2]
         if b - ax * x - ay * y <= delta + _TIGHT:
             continue
-        used = WHEEL_ROWS
+        used = np.int64(WHEEL_ROWS)
         for j in range(WHEEL_ROWS, i):
             dx, dy = rows[j, 0] - ax, rows[j, 1] - ay
             length = np.hypot(dx, dy)
@@ -180,7 +181,7 @@ def project(
     x, y, found = _nearest(rows, count, x0, y0)
     if found:
         return x, y, 0.0
-    x, y, _ = _nearest(rows, WHEEL_ROWS, x0, y0)
+    x, y, _ = _nearest(rows, np.int64(WHEEL_ROWS), x0, y0)
     x, y, delta = _least_relaxation(rows, count, work, speed, weight, x, y)
     for i in range(WHEEL_ROWS, count):
         rows[i, 2] -= delta
@@ -188,6 +189,11 @@ def project(
     if found:
         x, y = nearer_x, nearer_y
     return x, y, delta if delta > _RELAXED else 0.0
+
+
+@njit(cache=True)
+def _finite(x: float, y: float) -> bool:
+    return np.isfinite(x) and np.isfinite(y)
 
 
 @njit(cache=True)
@@ -206,7 +212,7 @@ def _fill_grid(points: Real, side: float, cells: Index, first: Index, order: Ind
     first[:] = 0
     for i in range(len(points)):
         cells[i, 2] = -1
-        if np.isfinite(points[i, 0]) and np.isfinite(points[i, 1]):
+        if _finite(points[i, 0], points[i, 1]):
             for axis in range(2):
                 cells[i, axis] = np.int64(np.floor(min(max(points[i, axis] / side, -1e9), 1e9)))
             cells[i, 2] = _bucket(cells[i, 0], cells[i, 1], size)
@@ -246,7 +252,7 @@ def nearest_on_obstacle(vertices: Real, x: float, y: float) -> tuple[float, floa
         if count > 2:
             length = np.sqrt(length2)
             outward = (ey * dx - ex * dy) / length
-            if outward > 0.0:
+            if not outward <= 0.0:  # also where a point is so far off that its products overflow
                 inside = False
             if outward > depth:
                 depth, ox, oy = outward, ey / length, -ex / length
@@ -260,7 +266,7 @@ def nearest_on_obstacle(vertices: Real, x: float, y: float) -> tuple[float, floa
 
 @njit(cache=True)
 def _within_wheels(vx: float, vy: float, gx: float, gy: float, speed: float, weight: float) -> float:
-    """The largest s <= 1 with v + s g in the wheels' diamond; 0 if v itself is not."""
+    """The largest s <= 1 with v + s g in the wheels' diamond; 0 if v itself is not and g does not lead back."""
     s = 1.0
     for side in range(WHEEL_ROWS):
         sign_x = 1.0 if side % 2 else -1.0
@@ -268,8 +274,17 @@ def _within_wheels(vx: float, vy: float, gx: float, gy: float, speed: float, wei
         room = speed - sign_x * vx - sign_y * vy
         slope = sign_x * gx + sign_y * gy
         if slope > room:
-            s = min(s, max(room, 0.0) / slope)
+            s = min(s, room / slope) if room > 0.0 else 0.0
     return s
+
+
+@njit(cache=True)
+def _bounded(x: float, y: float) -> tuple[float, float]:
+    """(x, y), m/s, shortened to :data:`_MOST` in its larger part."""
+    largest = max(abs(x), abs(y))
+    if largest <= _MOST:
+        return x, y
+    return x / largest * _MOST, y / largest * _MOST
 
 
 @njit(cache=True)
@@ -334,12 +349,14 @@ def step(
             vx, vy = common[run, i, 0], common[run, i, 1]
             blockers[run, i] = -1
             relaxation[run, i] = 0.0
-            if not np.isfinite(x + y + hx + hy + gx + gy + vx + vy):
+            if cells[i, 2] < 0 or not (_finite(hx, hy) and _finite(gx, gy) and _finite(vx, vy)):
                 u[run, i] = np.nan
                 intervention[run, i] = np.nan
                 continue
+            gx, gy = _bounded(gx, gy)
+            vx, vy = _bounded(vx, vy)
             wheel_rows(rows, speed, weight)
-            count = WHEEL_ROWS
+            count = np.int64(WHEEL_ROWS)  # a literal would be a type of its own, and compile all of it twice
             law = np.hypot(gx, gy)
             crowding = 0.0
             for cell in range(9):
@@ -360,7 +377,8 @@ def step(
                         continue
                     nx, ny = ex / distance, ey / distance
                     rows[count, 0], rows[count, 1] = nx, ny
-                    rows[count, 2] = nx * vx + ny * vy - gain * (distance * distance - safe * safe) / (4.0 * distance)
+                    barrier = gain * (distance * distance - safe * safe) / (4.0 * distance)
+                    rows[count, 2] = nx * vx + ny * vy - max(barrier, -_MOST)
                     source[count] = j
                     count += 1
                     crowding = max(crowding, _crowding((distance - safe) / window, nx, ny, gx, gy, law))
@@ -386,7 +404,7 @@ def step(
                 else:
                     nx, ny = ex / distance, ey / distance
                 rows[count, 0], rows[count, 1] = nx, ny
-                rows[count, 2] = -gain * (distance - constants.clearance)
+                rows[count, 2] = -max(gain * (distance - constants.clearance), -_MOST)
                 source[count] = code
                 count += 1
                 crowding = max(crowding, _crowding((distance - constants.clearance) / window, nx, ny, gx, gy, law))
