@@ -23,6 +23,7 @@ from robots.safety.protocol import BLOCKERS, WALLS
 
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
+Count = int | np.int64
 
 WHEEL_ROWS = 4
 """The diamond |u_x| + r |u_y| <= L has four sides."""
@@ -53,7 +54,7 @@ class Constants(NamedTuple):
 
 
 @njit(cache=True)
-def _interval(rows: Real, count: int, px: float, py: float, tx: float, ty: float) -> tuple[float, float, bool]:
+def _interval(rows: Real, count: Count, px: float, py: float, tx: float, ty: float) -> tuple[float, float, bool]:
     """The part [low, high] of the line p + s t that satisfies the first ``count`` rows, and whether there is one."""
     low, high = -np.inf, np.inf
     for j in range(count):
@@ -74,7 +75,7 @@ def _interval(rows: Real, count: int, px: float, py: float, tx: float, ty: float
 
 
 @njit(cache=True)
-def _nearest(rows: Real, count: int, x0: float, y0: float) -> tuple[float, float, bool]:
+def _nearest(rows: Real, count: Count, x0: float, y0: float) -> tuple[float, float, bool]:
     """The point nearest to (x0, y0) that satisfies the first ``count`` rows, and whether there is one.
 
     Incremental (Seidel 1991): while a row holds at the optimum of the rows before it nothing changes; when it does not,
@@ -96,7 +97,7 @@ def _nearest(rows: Real, count: int, x0: float, y0: float) -> tuple[float, float
 
 
 @njit(cache=True)
-def _farthest(rows: Real, count: int, cx: float, cy: float, x: float, y: float) -> tuple[float, float]:
+def _farthest(rows: Real, count: Count, cx: float, cy: float, x: float, y: float) -> tuple[float, float]:
     """The point farthest along c that satisfies the first ``count`` rows, given the one (x, y) of the wheel rows."""
     for i in range(WHEEL_ROWS, count):
         ax, ay, b = rows[i, 0], rows[i, 1], rows[i, 2]
@@ -115,7 +116,7 @@ def _farthest(rows: Real, count: int, cx: float, cy: float, x: float, y: float) 
 
 @njit(cache=True)
 def _least_relaxation(
-    rows: Real, count: int, work: Real, speed: float, weight: float, x: float, y: float
+    rows: Real, count: Count, work: Real, speed: float, weight: float, x: float, y: float
 ) -> tuple[float, float, float]:
     """The point within the wheels' diamond that breaks the other rows least, and by how much, m/s.
 
@@ -163,7 +164,7 @@ def wheel_rows(rows: Real, speed: float, weight: float) -> None:
 
 @njit(cache=True)
 def project(
-    rows: Real, count: int, work: Real, speed: float, weight: float, x0: float, y0: float
+    rows: Real, count: Count, work: Real, speed: float, weight: float, x0: float, y0: float
 ) -> tuple[float, float, float]:
     """The point nearest to (x0, y0) that satisfies the rows; the least relaxation if none does.
 

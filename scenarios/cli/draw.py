@@ -45,7 +45,7 @@ def plot(run_folder: Path, out: Path | None, formats: tuple[str, ...]) -> None:
 @click.option("--fps", default=20.0, show_default=True, metavar="N", help="Frames per second.")
 @options.out("Folder of the film.  [default: RUN]")
 def animate(run_folder: Path, form: str, speed: float, fps: float, out: Path | None) -> None:
-    """Film RUN, the folder of a finished run, as a GIF or with ffmpeg as an MP4."""
+    """Film RUN, the folder of a finished run, as a GIF or an MP4."""
     from scenarios.figures import animate as film
     from scenarios.measures.metrics import measure
     from scenarios.storage import script_folder

@@ -1,12 +1,11 @@
-"""Frames to GIF (Pillow) or MP4 (ffmpeg), into files that are whole or absent."""
+"""Frames to GIF (Pillow) or MP4 (PyAV, which carries its encoder), into files that are whole or absent."""
 
 from __future__ import annotations
 
-import shutil
-import subprocess
 from collections.abc import Callable, Iterator
+from fractions import Fraction
 from pathlib import Path
-from typing import IO, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,14 +22,17 @@ from scenarios.storage.files import replacing
 HOLD = 1.5
 """Seconds for which the last frame stays."""
 
-GIF_FPS_LIMIT = 50.0
-"""Viewers show faster GIFs slower."""
+LEAST_FPS = 0.1
+"""Frames per second, at least: a GIF counts a frame's hundredths of a second in 16 bits."""
 
-LEAST_FPS, FPS_LIMIT = 0.1, 1000.0
-"""Frames that stay for ten seconds; and more than any screen shows."""
+FPS_LIMIT = {".gif": 50.0, ".mp4": 240.0}
+"""Frames per second, at most: viewers show faster GIFs slower, and no screen shows a faster film."""
 
 FASTEST = 1e6
 """Simulated seconds per second: the longest run in a blink."""
+
+QUALITY = "20"
+"""Constant rate factor of x264: lines stay sharp, and a minute takes about a megabyte."""
 
 COLOURS = 128
 """Of a GIF's palette; enough for the agents' colours and the steps between them and white."""
@@ -83,28 +85,23 @@ def write_film(
         on_frame: called after each frame with the number of frames done and of all frames.
 
     Raises:
-        InputError: ``speed`` or ``fps`` is out of range, ffmpeg is missing or fails, or the file cannot be written.
+        InputError: ``speed`` or ``fps`` is out of range, or the file cannot be written.
     """
     if not 0.0 < speed <= FASTEST:
         raise InputError(f"--speed: expected a positive number up to {FASTEST:g}, got {speed:g}")
-    gif = path.suffix == ".gif"
-    most, why = (GIF_FPS_LIMIT, ", which is what viewers of GIFs can show") if gif else (FPS_LIMIT, "")
+    kind, most = path.suffix[1:], FPS_LIMIT[path.suffix]
     if not LEAST_FPS <= fps <= most:
-        raise InputError(f"--fps: expected a number from {LEAST_FPS:g} to {most:g}{why}, got {fps:g}")
+        raise InputError(
+            f"--fps: expected a number from {LEAST_FPS:g} to {most:g}, which is what viewers of {kind} can show, got {fps:g}"
+        )
     wanted = seconds * fps / speed
     if not wanted <= MAX_FRAMES:
         raise InputError(
             f"--speed, --fps: expected at most {MAX_FRAMES} frames, {speed:g} and {fps:g} make {wanted:.3g}"
         )
-    ffmpeg = None if gif else shutil.which("ffmpeg")
-    if not gif and ffmpeg is None:
-        raise InputError("--format mp4: needs ffmpeg, which is not on the PATH; --format gif does not")
+    write = _gif if path.suffix == ".gif" else _mp4
     with print_style(), replacing(path) as scratch:
-        film = make()
-        if ffmpeg is None:
-            _gif(film, scratch, fps, on_frame)
-        else:
-            _mp4(film, scratch, fps, on_frame, ffmpeg)
+        write(make(), scratch, fps, on_frame)
 
 
 def _gif(film: Reel, path: Path, fps: float, on_frame: OnFrame) -> None:
@@ -143,33 +140,19 @@ def _rgb(pixels: Pixels) -> Image.Image:
     return Image.fromarray(pixels[..., :3].copy())
 
 
-def _mp4(film: Reel, path: Path, fps: float, on_frame: OnFrame, ffmpeg: str) -> None:
-    width, height = film.size
-    command = [ffmpeg, "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{width}x{height}"]
-    command += ["-r", f"{fps:g}", "-i", "-", "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20"]
-    command += ["-movflags", "+faststart", "-fflags", "+bitexact", "-flags:v", "+bitexact", str(path)]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
-        try:
-            if process.stdin is not None:
-                _feed(film, process.stdin, fps, on_frame)
-            complaint = process.stderr.read().decode(errors="replace") if process.stderr is not None else ""
-        except BaseException:
-            process.kill()
-            raise
-    if process.returncode != 0:
-        lines = complaint.strip().splitlines() or [f"exit code {process.returncode}"]
-        raise InputError(f"{path.name}: ffmpeg failed: {lines[-1]}")
+def _mp4(film: Reel, path: Path, fps: float, on_frame: OnFrame) -> None:
+    import av  # loads 70 MB of codecs
 
-
-def _feed(film: Reel, pipe: IO[bytes], fps: float, on_frame: OnFrame) -> None:
-    """Write all frames, the last one repeated; ends early when ffmpeg closes the pipe, and then it says why itself."""
     total = len(film.rows)
-    try:
+    with path.open("wb") as file, av.open(file, "w", format="mp4", options={"fflags": "+bitexact"}) as container:
+        stream = container.add_stream("libx264", rate=Fraction(fps).limit_denominator(1000), options={"crf": QUALITY})
+        stream.width, stream.height = film.size
+        stream.pix_fmt = "yuv420p"
+        stream.codec_context.flags |= av.codec.context.Flags.bitexact
         for done, pixels in enumerate(film.frames(), start=1):
-            frame = pixels.tobytes()
+            frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(pixels), format="rgba")
             for _ in range(1 + round(HOLD * fps) if done == total else 1):
-                pipe.write(frame)
+                frame.pts = None
+                container.mux(stream.encode(frame))
             on_frame(done, total)
-        pipe.close()
-    except BrokenPipeError:
-        return
+        container.mux(stream.encode())

@@ -1,4 +1,4 @@
-"""The compiled kernel in every state that numbers can describe: it answers, within the wheels' limits, and never raises."""
+"""The compiled kernel in every state that numbers can describe: it answers within the wheels' limits, always."""
 
 from __future__ import annotations
 

@@ -1,0 +1,202 @@
+"""`make mutants`: does a test notice when the theory or the machines are changed?
+
+Of all mutants of ``formation/`` and of ``robots/`` a seeded sample is made, each in a copy of the project, and the
+tests of that floor which run the changed line are run on it, the quickest first, until one fails. A mutant that all of
+them pass has survived. Compiled functions are compiled anew for every mutant of theirs; which lines a test runs is
+found with the compiler off.
+
+Neither mutmut nor cosmic-ray does this: the first wraps every function in one that numba cannot compile, the second
+runs one command, the same for each mutant. So the choice is ours; coverage.py finds the lines and pytest runs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+import random
+import resource
+import shutil
+import signal
+import sys
+import tempfile
+import time
+import tomllib
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import coverage
+import numba
+import pytest
+from mutate import Mutant, mutants
+
+ROOT = Path(__file__).parents[2]
+FLOORS = ("formation", "robots")
+SEED = 57
+EQUIVALENT = Path(__file__).with_name("equivalent.toml")
+CPU_LIMIT = 240
+"""Seconds of processor time after which a mutant counts as noticed: it never ends."""
+
+QUIET = ["-q", "-x", "--no-header", "-p", "no:cacheprovider", "-m", "not slow"]
+KERNEL = "robots/safety/kernel.py"
+
+
+class Watch:
+    """A pytest plugin: how long each test takes, and under whose name lines are covered."""
+
+    def __init__(self, cover: coverage.Coverage | None = None) -> None:
+        self.cover = cover
+        self.seconds: dict[str, float] = {}
+
+    def pytest_runtest_logstart(self, nodeid: str) -> None:
+        """A test begins."""
+        if self.cover is not None:
+            self.cover.switch_context(nodeid)
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """A part of a test has ended."""
+        self.seconds[report.nodeid] = self.seconds.get(report.nodeid, 0.0) + report.duration
+
+
+def forked(work: Callable[[], int], log: Path) -> int:
+    """The exit code of ``work``, done in a process of its own with a limit of time; -1 where it had to be ended."""
+    child = os.fork()
+    if child == 0:
+        resource.setrlimit(resource.RLIMIT_CPU, (CPU_LIMIT, CPU_LIMIT + 5))
+        signal.signal(signal.SIGXCPU, signal.SIG_DFL)
+        to = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+        os.dup2(to, 1)
+        os.dup2(to, 2)
+        code = 1
+        try:
+            code = work()
+        except BaseException:
+            traceback.print_exc()
+        finally:
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(code)
+    _, status = os.waitpid(child, 0)
+    return os.waitstatus_to_exitcode(status) if os.WIFEXITED(status) else -1
+
+
+def survey(copy: Path, floor: str, log: Path) -> None:
+    """Run a floor's tests once and write beside the copy which of them runs which line, and how long each takes."""
+
+    def work() -> int:
+        numba.config.DISABLE_JIT = True
+        os.chdir(copy)
+        sys.path.insert(0, str(copy))
+        cover = coverage.Coverage(data_file=None, source=[floor])
+        watch = Watch(cover)
+        cover.start()
+        code = pytest.main([*QUIET, "-W", "ignore::RuntimeWarning", f"tests/{floor}", floor], [watch])
+        cover.stop()
+        data = cover.get_data()
+        lines = {
+            str(Path(file).relative_to(copy)): {str(n): c for n, c in data.contexts_by_lineno(file).items()}
+            for file in data.measured_files()
+        }
+        (copy / f"{floor}.json").write_text(json.dumps({"lines": lines, "seconds": watch.seconds}))
+        return int(code)
+
+    if forked(work, log) != 0:
+        sys.exit(f"the tests of {floor} fail without a mutant: {log.read_text()[-2000:]}")
+
+
+def choose(mutant: Mutant, seen: dict[str, Any]) -> list[str]:
+    """The tests that run a mutant's line, the quickest first; of a line that an import runs, all of the floor."""
+    lines = seen["lines"].get(mutant.path, {})
+    named = [name for name in lines.get(str(mutant.line), []) if name]
+    return sorted(named or seen["seconds"], key=seen["seconds"].__getitem__)
+
+
+def survives(mutant: Mutant, copy: Path, tests: list[str], log: Path, compiled: Path) -> bool:
+    """Whether all ``tests`` pass with a mutant in the copy."""
+    file = copy / mutant.path
+    source, stamp = file.read_text(encoding="utf-8"), file.stat()
+    file.write_text(mutant.applied(source), encoding="utf-8")
+    cache = compiled
+    if mutant.path == KERNEL:
+        cache = Path(tempfile.mkdtemp(dir=copy.parent))
+
+    def work() -> int:
+        numba.config.CACHE_DIR = str(cache)
+        os.chdir(copy)
+        sys.path.insert(0, str(copy))
+        sys.dont_write_bytecode = True
+        return int(pytest.main([*QUIET, *tests]))
+
+    try:
+        return forked(work, log) == 0
+    finally:
+        file.write_text(source, encoding="utf-8")
+        os.utime(file, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
+        if cache != compiled:
+            shutil.rmtree(cache)
+
+
+def interval(killed: int, of: int, z: float = 1.96) -> tuple[float, float]:
+    """Wilson's interval of a share, 95 % for this z."""
+    share, spread = killed / of, z * z / of
+    middle = share + spread / 2.0
+    half = math.sqrt(share * (1.0 - share) * spread + spread * spread / 4.0)
+    return (middle - half) / (1.0 + spread), (middle + half) / (1.0 + spread)
+
+
+def main() -> None:
+    """Make the sample, run it, print the survivors and the score."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--sample", type=int, default=150, help="mutants of each floor")
+    parser.add_argument("--seed", type=int, default=SEED, help="of the sample")
+    parser.add_argument("--floor", choices=FLOORS, action="append", help="only this one")
+    parser.add_argument("--again", type=Path, metavar="FILE", help="only the survivors that an earlier --report lists")
+    parser.add_argument("--report", type=Path, metavar="FILE", help="write survivors here, one JSON object a line")
+    chosen = parser.parse_args()
+    known = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8"))["equivalent"]
+    equivalent = {(entry["path"], entry["before"], entry["after"]) for entry in known}
+    again = None
+    if chosen.again is not None:
+        again = {tuple(json.loads(line).values()) for line in chosen.again.read_text().splitlines()}
+    with tempfile.TemporaryDirectory() as folder:
+        copy, log, compiled = Path(folder, "project"), Path(folder, "log"), Path(folder, "compiled")
+        kept = shutil.ignore_patterns(".*", "__pycache__", "runs", "*.egg-info", "build")
+        shutil.copytree(ROOT, copy, ignore=kept)
+        for floor in chosen.floor or FLOORS:
+            started = time.monotonic()
+            survey(copy, floor, log)
+            seen = json.loads((copy / f"{floor}.json").read_text())
+            every = [
+                mutant
+                for path in sorted((copy / floor).rglob("*.py"))
+                for mutant in mutants(str(path.relative_to(copy)), path.read_text(encoding="utf-8"))
+            ]
+            sample = sorted(random.Random(chosen.seed).sample(every, min(chosen.sample, len(every))))
+            if again is not None:
+                sample = [m for m in every if (m.path, m.before, m.after) in again]
+            alike = [m for m in sample if (m.path, m.before, m.after) in equivalent]
+            tried = [m for m in sample if m not in alike]
+            killed = 0
+            for mutant in tried:
+                if not survives(mutant, copy, choose(mutant, seen), log, compiled):
+                    killed += 1
+                    continue
+                print(f"{mutant.path}:{mutant.line}\n  - {mutant.before}\n  + {mutant.after}", flush=True)
+                if chosen.report is not None:
+                    with chosen.report.open("a") as report:
+                        row = {"path": mutant.path, "before": mutant.before, "after": mutant.after}
+                        report.write(json.dumps(row) + "\n")
+            low, high = interval(killed, len(tried))
+            print(
+                f"{floor}: {killed} of {len(tried)} noticed, {killed / len(tried):.1%} "
+                f"(95 % interval {low:.1%} to {high:.1%}); {len(every)} mutants in all, {len(alike)} of the sample "
+                f"change nothing; {(time.monotonic() - started) / 60.0:.0f} min",
+                flush=True,
+            )
+
+
+if __name__ == "__main__":
+    main()
