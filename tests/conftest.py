@@ -1,6 +1,9 @@
 """What all tests share: hypothesis settings, scenarios made from the library's, and targets for benchmarks."""
 
+import os
+import shutil
 import sys
+import tempfile
 import time
 import tomllib
 from collections.abc import Callable, Iterator
@@ -21,6 +24,10 @@ from scenarios.simulation.trajectory import Trajectory
 hypothesis.settings.register_profile("project", deadline=None, derandomize=True, max_examples=60)
 hypothesis.settings.load_profile("project")
 
+SHELL = ("sh",)
+"""Programs that every machine has, and that a test or a library may start."""
+
+TOOLS = pytest.StashKey[tempfile.TemporaryDirectory[str]]()
 MEASURED = pytest.StashKey[list[tuple[str, str, str, bool]]]()
 
 
@@ -153,6 +160,21 @@ def target(request: pytest.FixtureRequest) -> Callable[[str, float, float, str],
         assert met, f"{name}: {measured:.4g} {unit}, target {at_most:g} {unit}"
 
     return against
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Leave on the PATH what `make install` brought and the shell: no test leans on a program of this machine."""
+    found = {name: shutil.which(name) for name in SHELL}
+    tools = config.stash[TOOLS] = tempfile.TemporaryDirectory(prefix="tools-")
+    for name, program in found.items():
+        if program is not None:
+            Path(tools.name, name).symlink_to(os.path.realpath(program))
+    os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), tools.name])
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """Remove the folder of links."""
+    config.stash[TOOLS].cleanup()
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:

@@ -16,9 +16,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from robots.compiled import compiled
 from robots.safety.protocol import BLOCKERS, WALLS
 
 Real = NDArray[np.float64]
@@ -53,7 +53,7 @@ class Constants(NamedTuple):
     turn_weight: float
 
 
-@njit(cache=True)
+@compiled
 def _interval(rows: Real, count: Count, px: float, py: float, tx: float, ty: float) -> tuple[float, float, bool]:
     """The part [low, high] of the line p + s t that satisfies the first ``count`` rows, and whether there is one."""
     low, high = -np.inf, np.inf
@@ -74,7 +74,7 @@ def _interval(rows: Real, count: Count, px: float, py: float, tx: float, ty: flo
     return low, high, True
 
 
-@njit(cache=True)
+@compiled
 def _nearest(rows: Real, count: Count, x0: float, y0: float) -> tuple[float, float, bool]:
     """The point nearest to (x0, y0) that satisfies the first ``count`` rows, and whether there is one.
 
@@ -96,7 +96,7 @@ def _nearest(rows: Real, count: Count, x0: float, y0: float) -> tuple[float, flo
     return x, y, True
 
 
-@njit(cache=True)
+@compiled
 def _farthest(rows: Real, count: Count, cx: float, cy: float, x: float, y: float) -> tuple[float, float]:
     """The point farthest along c that satisfies the first ``count`` rows, given the one (x, y) of the wheel rows."""
     for i in range(WHEEL_ROWS, count):
@@ -114,7 +114,7 @@ def _farthest(rows: Real, count: Count, cx: float, cy: float, x: float, y: float
     return x, y
 
 
-@njit(cache=True)
+@compiled
 def _least_relaxation(
     rows: Real, count: Count, work: Real, speed: float, weight: float, x: float, y: float
 ) -> tuple[float, float, float]:
@@ -152,7 +152,7 @@ def _least_relaxation(
     return x, y, delta
 
 
-@njit(cache=True)
+@compiled
 def wheel_rows(rows: Real, speed: float, weight: float) -> None:
     """Write the sides of the diamond |u_x| + weight |u_y| <= speed into the first rows."""
     norm = np.hypot(1.0, weight)
@@ -162,7 +162,7 @@ def wheel_rows(rows: Real, speed: float, weight: float) -> None:
         rows[side, 2] = -speed / norm
 
 
-@njit(cache=True)
+@compiled
 def project(
     rows: Real, count: Count, work: Real, speed: float, weight: float, x0: float, y0: float
 ) -> tuple[float, float, float]:
@@ -192,17 +192,17 @@ def project(
     return x, y, delta if delta > _RELAXED else 0.0
 
 
-@njit(cache=True)
+@compiled
 def _finite(x: float, y: float) -> bool:
     return np.isfinite(x) and np.isfinite(y)
 
 
-@njit(cache=True)
+@compiled
 def _bucket(cx: int, cy: int, size: int) -> int:
     return ((cx * 73856093) ^ (cy * 19349663)) & (size - 1)
 
 
-@njit(cache=True)
+@compiled
 def _fill_grid(points: Real, side: float, cells: Index, first: Index, order: Index) -> None:
     """Sort robots into cells of a side, metres, hashed into buckets: ``order[first[b]:first[b + 1]]`` is bucket b.
 
@@ -227,7 +227,7 @@ def _fill_grid(points: Real, side: float, cells: Index, first: Index, order: Ind
             order[first[b]] = i
 
 
-@njit(cache=True)
+@compiled
 def nearest_on_obstacle(vertices: Real, x: float, y: float) -> tuple[float, float, float]:
     """Signed distance, metres, from a convex core to (x, y), and the unit vector from the core to the point.
 
@@ -265,7 +265,7 @@ def nearest_on_obstacle(vertices: Real, x: float, y: float) -> tuple[float, floa
     return distance, bx / distance, by / distance
 
 
-@njit(cache=True)
+@compiled
 def _within_wheels(vx: float, vy: float, gx: float, gy: float, speed: float, weight: float) -> float:
     """The largest s <= 1 with v + s g in the wheels' diamond; 0 if v itself is not and g does not lead back."""
     s = 1.0
@@ -279,7 +279,7 @@ def _within_wheels(vx: float, vy: float, gx: float, gy: float, speed: float, wei
     return s
 
 
-@njit(cache=True)
+@compiled
 def _bounded(x: float, y: float) -> tuple[float, float]:
     """(x, y), m/s, shortened to :data:`_MOST` in its larger part."""
     largest = max(abs(x), abs(y))
@@ -288,7 +288,7 @@ def _bounded(x: float, y: float) -> tuple[float, float]:
     return x / largest * _MOST, y / largest * _MOST
 
 
-@njit(cache=True)
+@compiled
 def step(
     points: Real,
     headings: Real,
@@ -439,13 +439,13 @@ def step(
                     side[run, i] = 1.0
 
 
-@njit(cache=True)
+@compiled
 def _measured(ex: float, ey: float, turn: Real, offset: Real) -> tuple[float, float]:
     """What comes of the vector from a thing to its observer, whose measurement is of the opposite vector."""
     return turn[0] * ex - turn[1] * ey - offset[0], turn[1] * ex + turn[0] * ey - offset[1]
 
 
-@njit(cache=True)
+@compiled
 def _crowding(gap: float, nx: float, ny: float, gx: float, gy: float, law: float) -> float:
     """How much the law drives at something near: 0 beyond the sensing range or driving away, 1 head-on at contact."""
     if law == 0.0:

@@ -92,7 +92,8 @@ def write_film(
     kind, most = path.suffix[1:], FPS_LIMIT[path.suffix]
     if not LEAST_FPS <= fps <= most:
         raise InputError(
-            f"--fps: expected a number from {LEAST_FPS:g} to {most:g}, which is what viewers of {kind} can show, got {fps:g}"
+            f"--fps: expected a number from {LEAST_FPS:g} to {most:g}, which is what viewers of "
+            f"{kind} can show, got {fps:g}"
         )
     wanted = seconds * fps / speed
     if not wanted <= MAX_FRAMES:

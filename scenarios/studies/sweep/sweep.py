@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from scenarios.errors import InputError
+from scenarios.simulation.compiling import compile_filters
 from scenarios.studies.sweep import folder as place
 from scenarios.studies.sweep.row import run_batch
 from scenarios.studies.sweep.study import Study
@@ -54,6 +55,7 @@ def sweep(
             kept = done = place.begin(folder, study, restart)
             on_progress(done, study.runs)
             if done < study.runs:
+                compile_filters(combination.file.scenario for combination in study.combinations)
                 for batch, rows in zip(study.batches(done), run_all(run_batch, study.batches(done)), strict=True):
                     place.append(folder, batch, rows)
                     done += len(rows)

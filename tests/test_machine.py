@@ -1,0 +1,68 @@
+"""What is promised holds on every machine: no program but ours, no folder that can be written, no terminal."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numba
+import pytest
+
+from robots.compiled import at_hand, compiled
+from robots.safety import kernel
+from scenarios.simulation import compiling
+
+NOWHERE = """
+import warnings
+from numba.core import caching
+caching.CacheImpl._locator_classes = []  # as numba finds them: nothing can be written
+warnings.simplefilter("error")
+from robots.safety import kernel
+from robots.compiled import at_hand
+print(at_hand(kernel.step), kernel._within_wheels(0.3, 0.0, 0.0, 0.0, 0.2, 2.2))
+"""
+
+
+def test_the_path_of_the_tests_holds_the_environments_programs_and_the_shells_alone() -> None:
+    ours, shells = map(Path, os.environ["PATH"].split(os.pathsep))
+    assert ours == Path(sys.executable).parent
+    assert sorted(program.name for program in shells.iterdir()) == ["sh"]
+    assert shutil.which("ffmpeg") is None
+
+
+def test_where_no_machine_code_can_be_kept_the_filter_runs_without_a_word() -> None:
+    done = subprocess.run([sys.executable, "-c", NOWHERE], capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "False 0.0\n", "")
+
+
+def test_machine_code_is_at_hand_once_a_function_was_called() -> None:
+    def twice(x: float) -> float:
+        return 2.0 * x
+
+    function = compiled(twice)
+    assert function(2.0) == 4.0
+    assert at_hand(function)
+    assert at_hand(twice)  # not compiled at all
+    assert not at_hand(numba.njit(lambda x: x))
+
+
+@pytest.mark.parametrize("ready", [True, False])
+def test_one_word_announces_what_takes_seconds_and_nothing_else_does(
+    ready: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("robots.compiled.at_hand", lambda function: function is kernel.step and ready)
+    for name in ("none", "centralised", "decentralised"):
+        compiling.compile_filter(name)
+    assert capsys.readouterr() == ("", "" if ready else "formation: compiling, once\n")
+
+
+def test_a_folder_of_the_users_that_is_called_robots_does_not_hide_the_package(tmp_path: Path) -> None:
+    (tmp_path / "robots").mkdir()
+    (tmp_path / "robots" / "mine.toml").write_text("", encoding="utf-8")
+    script = tmp_path / "script.py"
+    script.write_text("from robots import GTERNAL\nimport scenarios.one_run\nprint(GTERNAL.drive.base_length)\n")
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, cwd=tmp_path)
+    assert (done.stdout, done.stderr) == ("0.11\n", "")
