@@ -16,8 +16,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from robots.compiled import compiled
 
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -39,7 +40,7 @@ def closest_pairs(points: Real) -> Index:
     return pairs
 
 
-@njit(cache=True)
+@compiled
 def _closest_pairs(points: Real, shuffled: Index, pairs: Index) -> None:
     n = points.shape[1]
     order, count = np.empty((2, n), np.int64), np.empty(n + 1, np.int64)
@@ -64,7 +65,7 @@ def _closest_pairs(points: Real, shuffled: Index, pairs: Index) -> None:
         pairs[row, 0], pairs[row, 1] = best[1], best[2]
 
 
-@njit(cache=True)
+@compiled
 def _spread(p: Real, axis: int) -> float:
     """Metres from the first to the last point along an axis; infinite where one is not finite."""
     low, high = p[0, axis], p[0, axis]
@@ -75,7 +76,7 @@ def _spread(p: Real, axis: int) -> float:
     return high - low
 
 
-@njit(cache=True)
+@compiled
 def _reach(p: Real) -> float:
     reach = 0.0
     for i in range(len(p)):
@@ -83,19 +84,19 @@ def _reach(p: Real) -> float:
     return reach
 
 
-@njit(cache=True)
+@compiled
 def _apart(p: Real, i: int, j: int) -> tuple[float, int, int]:
     i, j = min(i, j), max(i, j)
     return math.hypot(p[i, 0] - p[j, 0], p[i, 1] - p[j, 1]), i, j
 
 
-@njit(cache=True)
+@compiled
 def _closer(one: tuple[float, int, int], other: tuple[float, int, int]) -> bool:
     """Whether ``one`` is closer, or as close and earlier in the order of rows."""
     return one[0] < other[0] or (one[0] == other[0] and (one[1], one[2]) < (other[1], other[2]))
 
 
-@njit(cache=True)
+@compiled
 def _all_pairs(p: Real) -> tuple[float, int, int]:
     """By comparing all pairs, as numpy's argmin does: the first NaN is smallest."""
     best = (np.inf, 0, 1)
@@ -109,7 +110,7 @@ def _all_pairs(p: Real) -> tuple[float, int, int]:
     return best
 
 
-@njit(cache=True)
+@compiled
 def _sort(p: Real, axis: int, order: Index, count: Index) -> None:
     """Sort ``order`` along an axis, in place: by insertion where it is nearly sorted, else after filling bins.
 
@@ -137,7 +138,7 @@ def _sort(p: Real, axis: int, order: Index, count: Index) -> None:
     _shell_sort(p, axis, order)
 
 
-@njit(cache=True)
+@compiled
 def _insertion(p: Real, axis: int, order: Index) -> bool:
     """Sort ``order`` by insertion; False where it gave up, which leaves some permutation."""
     shifts = _SHIFTS * len(order)
@@ -154,7 +155,7 @@ def _insertion(p: Real, axis: int, order: Index) -> bool:
     return True
 
 
-@njit(cache=True)
+@compiled
 def _shell_sort(p: Real, axis: int, order: Index) -> None:
     """Sort ``order`` along an axis, then along the other one, then by row, in whatever order it is."""
     gap = 1
@@ -170,7 +171,7 @@ def _shell_sort(p: Real, axis: int, order: Index) -> None:
         gap //= 3
 
 
-@njit(cache=True)
+@compiled
 def _before(p: Real, axis: int, i: int, j: int) -> bool:
     if p[i, axis] != p[j, axis]:
         return bool(p[i, axis] < p[j, axis])
@@ -179,7 +180,7 @@ def _before(p: Real, axis: int, i: int, j: int) -> bool:
     return i < j
 
 
-@njit(cache=True)
+@compiled
 def _sweep(p: Real, order: Index, axis: int, best: tuple[float, int, int]) -> tuple[tuple[float, int, int], bool]:
     """The closest pair and True; or, where it would take too long, some close pair and False."""
     left = _COMPARISONS * len(order)
@@ -203,7 +204,7 @@ def _sweep(p: Real, order: Index, axis: int, best: tuple[float, int, int]) -> tu
     return best, True
 
 
-@njit(cache=True)
+@compiled
 def _grid(p: Real, order: Index, best: tuple[float, int, int]) -> tuple[float, int, int]:
     """The closest pair by inserting points in random order into cells as wide as the closest pair so far."""
     n = len(order)
@@ -239,19 +240,19 @@ def _grid(p: Real, order: Index, best: tuple[float, int, int]) -> tuple[float, i
     return best if best[0] > 0.0 else _coincident(p)
 
 
-@njit(cache=True)
+@compiled
 def _insert(p: Real, i: int, side: float, first: Index, after: Index) -> None:
     b = _bucket(math.floor(p[i, 0] / side), math.floor(p[i, 1] / side), len(first))
     after[i] = first[b]
     first[b] = i
 
 
-@njit(cache=True)
+@compiled
 def _bucket(cx: float, cy: float, size: int) -> int:
     return int(((np.int64(cx) * 73856093) ^ (np.int64(cy) * 19349663)) & (size - 1))
 
 
-@njit(cache=True)
+@compiled
 def _coincident(p: Real) -> tuple[float, int, int]:
     """The first pair of equal points, where there is one."""
     order = np.arange(len(p))

@@ -1,9 +1,9 @@
 """The testbed's rules: would the Robotarium accept this run?
 
 A run is rejected when a robot's axle centre leaves the floor, or when two collision centres, each 0.025 m ahead of its
-axle centre, come within 0.135 m of each other (``rps`` 2.1). Ours, by the same measure: when one comes within half of
-that of an obstacle. A wheel command beyond the limit is a warning: the testbed clips it. Each kind of violation is
-reported once, with its first occurrence and the number of steps it lasts.
+axle centre, come within 0.135 m of each other, or to just that (``rps`` 2.1). Ours, by the same measure: when one comes
+within half of that of an obstacle. A wheel command beyond the limit is a warning: the testbed clips it. Each kind of
+violation is reported once, with its first and its worst occurrence and the number of steps it lasts.
 """
 
 from __future__ import annotations
@@ -19,12 +19,35 @@ from robots.drive import DifferentialDrive
 from robots.model import COLLISION_CENTRE, GTERNAL
 
 Real = NDArray[np.float64]
+Kind = Literal["floor", "collision", "obstacle", "actuator"]
 
 COLLISION_DISTANCE = 0.135
-"""Metres between two collision centres, below which the testbed rejects a run (``rps`` 2.1)."""
+"""Metres between two collision centres, up to which the testbed rejects a run (``rps`` 2.1)."""
 
 OBSTACLE_DISTANCE = COLLISION_DISTANCE / 2.0
-"""Metres between a collision centre and an obstacle, below which the verdict rejects a run."""
+"""Metres between a collision centre and an obstacle, up to which the verdict rejects a run."""
+
+
+_ROUNDING = 1e-15  # share of the wheels' limit by which a command that was cut to the limit may be off
+
+
+@dataclass(frozen=True)
+class Occurrence:
+    """A violation at one step.
+
+    Attributes:
+        time: seconds.
+        robots: rows of the robots involved.
+        place: (x, y), metres: the axle centre, the middle between the two collision centres, or the collision centre
+            at an obstacle.
+        value: what was found: the distance beyond the floor, between the centres or from the obstacle (m), or the wheel
+            speed (rad/s).
+    """
+
+    time: float
+    robots: tuple[int, ...]
+    place: tuple[float, float]
+    value: float
 
 
 @dataclass(frozen=True)
@@ -34,20 +57,15 @@ class Violation:
     Attributes:
         kind: ``floor``, ``collision`` and ``obstacle`` reject the run, ``actuator`` is a warning.
         steps: number of recorded steps at which it holds.
-        time: of the first one, seconds.
-        robots: rows of the robots involved in the first one.
-        place: (x, y) of the first one, metres: the axle centre, the middle between the two collision centres, or
-            the collision centre at an obstacle.
-        value: what was found: the distance beyond the floor, between the centres or from the obstacle (m), or the wheel
-            speed (rad/s).
+        first: of all occurrences; of several robots at that step, the one that is worst off.
+        worst: the furthest beyond the floor, the nearest to each other or to an obstacle, the fastest wheel; where the
+            run ends in no number, that.
     """
 
-    kind: Literal["floor", "collision", "obstacle", "actuator"]
+    kind: Kind
     steps: int
-    time: float
-    robots: tuple[int, ...]
-    place: tuple[float, float]
-    value: float
+    first: Occurrence
+    worst: Occurrence
 
 
 @dataclass(frozen=True)
@@ -106,32 +124,48 @@ def judge(
 
     ``near`` is the separation of the collision centres where the caller has it already: it is the dear part.
     """
-    violations = []
-    outside = ~floor.contains(poses[..., :2])
-    if (at := np.flatnonzero(outside.any(axis=1))).size:
-        k, robot = at[0], int(outside[at[0]].argmax())
-        x, y = poses[k, robot, :2].tolist()
-        beyond = max(floor.x[0] - x, x - floor.x[1], floor.y[0] - y, y - floor.y[1])
-        violations.append(Violation("floor", len(at), float(t[k]), (robot,), (x, y), beyond))
+    x, y = poses[..., 0], poses[..., 1]
+    beyond = np.max([floor.x[0] - x, x - floor.x[1], floor.y[0] - y, y - floor.y[1]], axis=0)
     centres = collision_centres(poses)
     if near is None:
         near = separation(centres)
-    if (at := np.flatnonzero(near.distance < COLLISION_DISTANCE)).size:
-        k = at[0]
-        i, j = near.pairs[k].tolist()
-        x, y = centres[k, [i, j]].mean(axis=0).tolist()
-        violations.append(Violation("collision", len(at), float(t[k]), (i, j), (x, y), float(near.distance[k])))
+    speed = np.abs(wheel_speeds).max(axis=-1)
+    found = [
+        _violation("floor", t, ~floor.contains(poses[..., :2]), beyond, beyond, poses[..., :2]),
+        _collision(t, near, centres),
+    ]
     if floor.obstacles:
         gaps = np.min([obstacle.distance(centres) for obstacle in floor.obstacles], axis=0)
-        touched = gaps < OBSTACLE_DISTANCE
-        if (at := np.flatnonzero(touched.any(axis=1))).size:
-            k, robot = at[0], int(gaps[at[0]].argmin())
-            x, y = centres[k, robot].tolist()
-            violations.append(Violation("obstacle", len(at), float(t[k]), (robot,), (x, y), float(gaps[k, robot])))
-    fast = np.abs(wheel_speeds).max(axis=-1) > drive.wheel_speed_limit * (1.0 + 1e-9)
-    if (at := np.flatnonzero(fast.any(axis=1))).size:
-        k, robot = at[0], int(fast[at[0]].argmax())
-        x, y = poses[k, robot, :2].tolist()
-        speed = float(np.abs(wheel_speeds[k, robot]).max())
-        violations.append(Violation("actuator", len(at), float(t[k]), (robot,), (x, y), speed))
-    return Verdict(tuple(violations))
+        found.append(_violation("obstacle", t, gaps <= OBSTACLE_DISTANCE, gaps, -gaps, centres))
+    fast = speed > drive.wheel_speed_limit * (1.0 + _ROUNDING)
+    found.append(_violation("actuator", t, fast, speed, speed, poses[..., :2]))
+    return Verdict(tuple(violation for violation in found if violation is not None))
+
+
+def _violation(kind: Kind, t: Real, holds: NDArray[np.bool_], value: Real, bad: Real, place: Real) -> Violation | None:
+    """Where ``holds`` (T, n) says so: the first and the worst, by ``bad`` (T, n), which grows as it gets worse."""
+    steps = np.flatnonzero(holds.any(axis=1))
+    if not steps.size:
+        return None
+    badness = np.where(holds, np.where(np.isnan(bad), np.inf, bad), -np.inf)
+
+    def occurrence(k: int) -> Occurrence:
+        robot = int(badness[k].argmax())
+        x, y = place[k, robot].tolist()
+        return Occurrence(float(t[k]), (robot,), (x, y), float(value[k, robot]))
+
+    return Violation(kind, len(steps), occurrence(int(steps[0])), occurrence(int(badness.max(axis=1).argmax())))
+
+
+def _collision(t: Real, near: Separation, centres: Real) -> Violation | None:
+    steps = np.flatnonzero(near.distance <= COLLISION_DISTANCE)
+    if not steps.size:
+        return None
+
+    def occurrence(k: int) -> Occurrence:
+        i, j = near.pairs[k].tolist()
+        x, y = centres[k, [i, j]].mean(axis=0).tolist()
+        return Occurrence(float(t[k]), (i, j), (x, y), float(near.distance[k]))
+
+    worst = int(steps[near.distance[steps].argmin()])
+    return Violation("collision", len(steps), occurrence(int(steps[0])), occurrence(worst))

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from formation import agents
-from robots.testbed import Violation
-from robots.worlds import NOTHING
+from robots.testbed import Occurrence, Violation
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.late_rates import predicted_late_rates
+from scenarios.measures.contacts import contacts
 from scenarios.measures.metrics import Metrics, PhaseEnd
 from scenarios.measures.safety_result import safety_result
 from scenarios.measures.tracking import Tracking
@@ -62,7 +62,7 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
             "time_s": float(trajectory.t[closest]),
             "agents": agents.numbers(metrics.separation.pairs[closest]).tolist(),
         },
-        "contacts": _contacts(trajectory),
+        "contacts": contacts(experiment, trajectory),
         "testbed": {
             "accepted": metrics.verdict.accepted,
             "violations": [_violation(v) for v in metrics.verdict.violations],
@@ -114,23 +114,6 @@ def _against_prediction(experiment: Experiment, tracking: Tracking, end: PhaseEn
     }
 
 
-def _contacts(trajectory: Trajectory) -> dict[str, Any]:
-    """In how many control periods any agent touched another one, a wall or an obstacle, who, and who first."""
-    touches = trajectory.contact != NOTHING
-    periods = np.flatnonzero(touches.any(axis=1))
-    if not periods.size:
-        return {"periods": 0, "agents": [], "first": None}
-    first = periods[0]
-    return {
-        "periods": len(periods),
-        "agents": agents.numbers(np.flatnonzero(touches.any(axis=0))).tolist(),
-        "first": {
-            "time_s": float(trajectory.t[first]),
-            "agents": agents.numbers(np.flatnonzero(touches[first])).tolist(),
-        },
-    }
-
-
 def versions() -> dict[str, str]:
     """Versions of what computed a result."""
     found = {name: importlib.metadata.version(name) for name in RECORDED_PACKAGES}
@@ -150,10 +133,15 @@ def _violation(violation: Violation) -> dict[str, Any]:
     return {
         "kind": violation.kind,
         "steps": violation.steps,
-        "first": {
-            "time_s": violation.time,
-            "agents": agents.numbers(violation.robots).tolist(),
-            "place_m": [_number(coordinate) for coordinate in violation.place],
-            "value": _number(violation.value),
-        },
+        "first": _occurrence(violation.first),
+        "worst": _occurrence(violation.worst),
+    }
+
+
+def _occurrence(occurrence: Occurrence) -> dict[str, Any]:
+    return {
+        "time_s": occurrence.time,
+        "agents": agents.numbers(occurrence.robots).tolist(),
+        "place_m": [_number(coordinate) for coordinate in occurrence.place],
+        "value": _number(occurrence.value),
     }

@@ -143,20 +143,24 @@ def _print_safety(console: Console, result: dict[str, Any]) -> None:
 def _contacts(contacts: dict[str, Any]) -> str:
     if contacts["first"] is None:
         return "none"
-    who = " and ".join(str(agent) for agent in contacts["first"]["agents"])
-    return f"in {contacts['periods']} control periods, first agents {who} at {contacts['first']['time_s']:.2f} s"
+    who = ", ".join(f"{one} with {other}" for one, other in contacts["first"]["touching"])
+    return f"in {contacts['periods']} control periods, first {who} at {contacts['first']['time_s']:.2f} s"
 
 
 def _describe(violation: dict[str, Any]) -> str:
-    first = violation["first"]
-    who = " and ".join(str(agent) for agent in first["agents"])
-    where = f"first at {first['time_s']:.2f} s, {place(first['place_m'])} m, {violation['steps']} steps"
+    first, worst = violation["first"], violation["worst"]
+    who = " and ".join(str(agent) for agent in worst["agents"])
+    begins = "" if first["agents"] == worst["agents"] else f" by {' and '.join(map(str, first['agents']))}"
+    where = (
+        f"; worst at {worst['time_s']:.2f} s, {place(worst['place_m'])} m, first at {first['time_s']:.2f} s{begins}, "
+        f"{violation['steps']} steps"
+    )
     match violation["kind"]:
         case "floor":
-            return f"agent {who} leaves the floor; {where}"
+            return f"agent {who} leaves the floor by {cell(worst['value'], '.3f')} m{where}"
         case "obstacle":
-            return f"agent {who} comes within {first['value']:.3f} m of an obstacle; {where}"
+            return f"agent {who} comes within {cell(worst['value'], '.3f')} m of an obstacle{where}"
         case "collision":
-            return f"agents {who} come within {first['value']:.3f} m; {where}"
+            return f"agents {who} come within {cell(worst['value'], '.3f')} m{where}"
         case _:
-            return f"agent {who} commands a wheel to {cell(first['value'], '.4g')} rad/s (warning); {where}"
+            return f"agent {who} commands a wheel to {cell(worst['value'], '.6g')} rad/s (warning){where}"

@@ -113,5 +113,5 @@ def test_a_robot_that_drives_at_an_obstacle_is_stopped_and_the_verdict_says_so()
     assert not verdict.accepted
     (violation,) = verdict.violations
     assert violation.kind == "obstacle"
-    assert violation.robots == (0,)
-    assert violation.value < 0.0675
+    assert violation.first.robots == (0,)
+    assert violation.first.value < 0.0675

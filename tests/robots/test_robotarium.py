@@ -80,6 +80,20 @@ def test_commands_go_to_the_robots_that_are_named() -> None:
     np.testing.assert_allclose((r.get_poses() - before)[0], [0.00165, 0.0, 0.0033], atol=1e-12)
 
 
+def test_the_verdict_tells_the_worst_and_the_first(capsys: pytest.CaptureFixture[str]) -> None:
+    """0.2 m/s for five steps from just within the floor: 0.030 m beyond it in the end, 0.004 m at first."""
+    r = Robotarium(initial_conditions=np.array([[1.597], [0.0], [0.0]]), plant="saturated")
+    for _ in range(5):
+        r.get_poses()
+        r.set_velocities([0], np.array([[0.2], [0.0]]))
+        r.step()
+    (violation,) = r.debug().violations
+    assert violation.first.value == pytest.approx(0.0036)
+    assert violation.worst.value == pytest.approx(0.03)
+    said = "robot 0 leaves the floor by 0.030 m; worst at 0.17 s near (1.63, 0.00) m, first at 0.03 s, 5 steps"
+    assert said in capsys.readouterr().out
+
+
 def test_each_wheel_is_clipped_by_itself_and_that_is_a_warning(capsys: pytest.CaptureFixture[str]) -> None:
     r = Robotarium(initial_conditions=np.zeros((3, 1)), plant="saturated")
     limit = GTERNAL.drive.wheel_speed_limit
@@ -93,7 +107,7 @@ def test_each_wheel_is_clipped_by_itself_and_that_is_a_warning(capsys: pytest.Ca
     assert [violation.kind for violation in verdict.violations] == ["actuator"]
     printed = capsys.readouterr().out
     assert "WARNING: robot 0" in printed
-    assert "37.50 rad/s" in printed
+    assert "37.5 rad/s" in printed
 
 
 def test_driving_off_the_floor_is_not_hidden_by_a_wall(capsys: pytest.CaptureFixture[str]) -> None:
