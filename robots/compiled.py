@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from numba import njit
@@ -28,8 +26,6 @@ def at_hand(function: Callable[..., Any]) -> bool:
     dispatcher: Any = function
     if not hasattr(dispatcher, "signatures") or dispatcher.signatures:  # the compiler may be switched off
         return True
-    folder, source = dispatcher.stats.cache_path, Path(dispatcher.py_func.__code__.co_filename)
-    if folder is None:
-        return False
-    index = f"{source.stem}.{dispatcher.py_func.__qualname__}-*.py{sys.version_info.major}{sys.version_info.minor}*.nbi"
-    return any(file.stat().st_mtime >= source.stat().st_mtime for file in Path(folder).glob(index))
+    # numba tells only after a call whether it found machine code of this source; the index that it would read says so.
+    index = getattr(dispatcher._cache, "_cache_file", None)
+    return index is not None and bool(index._load_index())

@@ -7,8 +7,10 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from time import monotonic
+from copy import copy
+from dataclasses import replace
 
-from rich.console import Console
+from rich.console import Console, ConsoleDimensions
 from rich.markup import escape
 from rich.measure import Measurement
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeRemainingColumn
@@ -21,8 +23,14 @@ LEFT = frozenset(
 )
 """Columns of text; all others hold numbers and are aligned right."""
 
+WRAPPED = frozenset(("title", "kind", "meaning"))
+"""Columns of words, which may take several lines."""
+
 PROGRESS_INTERVAL = 0.1
 """Seconds between two updates of a progress bar: more often cannot be read, and costs time."""
+
+GAP = 2
+"""Blanks between two columns."""
 
 WIDEST = 1000
 """Characters of a line, at most."""
@@ -74,19 +82,57 @@ def open_ended(console: Console, name: str) -> Iterator[Callable[[str], None]]:
 
 def new_table(*columns: str, title: str | None = None) -> Table:
     """An empty table with these columns."""
-    table = Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    table = Table(
+        title=title, title_justify="left", title_style="bold", box=None, pad_edge=False, padding=(0, GAP, 0, 0)
+    )
     for column in columns:
         left = column in LEFT
-        table.add_column(column, justify="left" if left else "right", no_wrap=column not in ("title", "meaning"))
+        table.add_column(column, justify="left" if left else "right", no_wrap=column not in WRAPPED)
     return table
 
 
 def print_table(console: Console, table: Table) -> None:
-    """Print a table with all its digits: where it is wider than the terminal, the terminal wraps its lines."""
-    terminal = console.width
-    needed = Measurement.get(console, console.options.update(max_width=WIDEST), table).maximum
-    console.width = max(terminal, needed)
-    try:
-        console.print(table)
-    finally:
-        console.width = terminal
+    """Print a table with all its digits.
+
+    Where it is wider than the terminal, columns that do not fit beside the others follow below, beside the first column
+    again; a single column that is wider still, the terminal wraps.
+    """
+    parts = _parts(console, table)
+    for part in parts:
+        if part is not parts[0]:
+            console.print()
+        size = console.size
+        console.size = ConsoleDimensions(max(size.width, _least_width(console, part)), size.height)
+        try:
+            console.print(part)
+        finally:
+            console.size = size
+
+
+def _parts(console: Console, table: Table) -> list[Table]:
+    """The table, or several with some of its columns each that fit the console; the first column leads them all."""
+    lead, *others = range(len(table.columns))
+    chosen = [[lead]]
+    for column in others:
+        if len(chosen[-1]) > 1 and _least_width(console, _with(table, [*chosen[-1], column])) > console.width:
+            chosen.append([lead])
+        chosen[-1].append(column)
+    return [table] if len(chosen) == 1 else [_with(table, columns) for columns in chosen]
+
+
+def _with(table: Table, columns: list[int]) -> Table:
+    """The table with these columns alone, in their order; its title above those that have its second column."""
+    part = copy(table)
+    part.columns = [replace(table.columns[old], _index=new) for new, old in enumerate(columns)]
+    part.title = table.title if columns[1:2] == [1] else None
+    return part
+
+
+def _least_width(console: Console, table: Table) -> int:
+    """Characters that the table needs so that nothing is cut off, with text wrapped where it may be."""
+    wide = console.options.update(max_width=WIDEST)
+    widths = []
+    for index, column in enumerate(table.columns):
+        needed = Measurement.get(console, wide, _with(table, [index]))
+        widths.append(needed.maximum if column.no_wrap else needed.minimum)
+    return sum(widths) + GAP * (len(widths) - 1)

@@ -8,7 +8,7 @@ from rich.markup import escape
 from scenarios.definition.keys import keys
 from scenarios.definition.load import library, load
 from scenarios.definition.schema import Scenario
-from scenarios.terminal import new_table
+from scenarios.terminal import new_table, print_table
 
 
 def print_library(console: Console) -> None:
@@ -18,15 +18,15 @@ def print_library(console: Console) -> None:
         s = load(name).scenario
         seconds = s.duration_s or sum(phase.duration_s for phase in s.phases)
         table.add_row(name, str(_agents(s)), f"{seconds:g}", s.plant.name, escape(s.title))
-    console.print(table)
+    print_table(console, table)
 
 
 def print_keys(console: Console) -> None:
     """The reference of the scenario file."""
     table = new_table("key", "kind", "default", "meaning")
     for key in keys():
-        table.add_row(key.name, key.kind, key.default, key.meaning)
-    console.print(table, markup=False)
+        table.add_row(*(escape(part) for part in (key.name, key.kind, key.default, key.meaning)))
+    print_table(console, table)
 
 
 def _agents(scenario: Scenario) -> int:

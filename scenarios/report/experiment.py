@@ -15,7 +15,7 @@ from scenarios.measures.forecast import NEAR, PhaseForecast, forecast
 from scenarios.measures.late_rates import expected_late_rates
 from scenarios.measures.remarks import remarks
 from scenarios.report.cells import NO_PREDICTION, digits, place
-from scenarios.terminal import new_table
+from scenarios.terminal import new_table, print_table
 
 
 def print_experiment(console: Console, experiment: Experiment, seed: int) -> None:
@@ -38,7 +38,7 @@ def print_experiment(console: Console, experiment: Experiment, seed: int) -> Non
     for name, value in zip(experiment.angles.names, np.degrees(experiment.target_angles), strict=True):
         table.add_row(name, f"{value:.4f}")
     console.print("\n[bold]Angles, counter-clockwise, alpha(vertex;from,to)[/bold]")
-    console.print(table)
+    print_table(console, table)
 
 
 def _print_assumptions(console: Console, experiment: Experiment, start: Any) -> None:
@@ -113,7 +113,7 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
             place(end[row]) if experiment.predicted else "-",
             cells[3],
         )
-    console.print(table)
+    print_table(console, table)
     if still:
         console.print("(c3): a follower with a positive margin that starts after its neighbours settled avoids both")
 
@@ -146,4 +146,4 @@ def _print_forecast(console: Console, experiment: Experiment, predicted: list[Ph
             cell(ahead.arrival, ".1f"),
         )
     console.print("\n[bold]Predicted end of each phase, c R(theta) p* + xi, for ideal single integrators[/bold]")
-    console.print(table)
+    print_table(console, table)

@@ -27,7 +27,7 @@ def print_result(console: Console, result: dict[str, Any]) -> None:
     table.add_section()
     total, axle = result["angle_error_sum_rad"], result["axle_angle_error_sum_rad"]
     table.add_row("sum of |error|", "", "", cell(total, ".2e"), cell(axle, ".2e"), style="bold")
-    console.print(table)
+    print_table(console, table)
     console.print()
     _print_phases(console, result)
     if result["phases"]:
@@ -87,7 +87,7 @@ def _print_phases(console: Console, result: dict[str, Any]) -> None:
             cell(phase["orientation_error_rad"], "+.1e"),
             cell(phase["translation_error_m"], ".1e"),
         )
-    console.print(table)
+    print_table(console, table)
     console.print()
 
 
@@ -110,7 +110,7 @@ def _print_ends(console: Console, result: dict[str, Any]) -> None:
             cell(distance, ".1e"),
             *(cell(rate, ".3f") for rate in late),
         )
-    console.print(table)
+    print_table(console, table)
     if last["predicted_m"] is None:
         console.print(NO_PREDICTION)
     console.print()

@@ -14,7 +14,7 @@ from scenarios.documents import markdown_table
 from scenarios.errors import InputError
 from scenarios.measures.metrics import judged_end
 from scenarios.simulation.loop import count_periods, simulate
-from scenarios.terminal import new_table
+from scenarios.terminal import new_table, print_table
 
 Progress = Callable[[int, int], None]
 """Called with the number of control periods done and of all."""
@@ -133,7 +133,7 @@ def print_laws(console: Console, shares: Sequence[Share]) -> None:
     table = new_table(*COLUMNS)
     for row in rows(shares):
         table.add_row(*row)
-    console.print(table)
+    print_table(console, table)
 
 
 def markdown(shares: Sequence[Share], starts: int) -> str:
