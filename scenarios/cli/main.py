@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import gc
+import io
+import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import click
 
 from scenarios.cli import draw, export, look, many, run, script, study
-from scenarios.cli.exits import BAD_INPUT, INTERRUPTED
+from scenarios.cli.exits import BAD_INPUT, INTERRUPTED, MISSED
 from scenarios.errors import InputError, did_you_mean, plain
 
 FAMILIES: tuple[tuple[click.Command, ...], ...] = (
@@ -51,14 +55,46 @@ def cli(ctx: click.Context) -> None:
 def main() -> None:
     """Run the command line: errors on one line on stderr, never a traceback for bad input."""
     gc.set_threshold(50_000, 20, 50)  # loading packages makes objects and frees none: searching them costs 0.2 s a run
+    _show_what_the_terminal_can()
     try:
-        cli.main(standalone_mode=False)
+        with _written_whole():
+            cli.main(standalone_mode=False)
     except InputError as error:
         _fail(str(error))
     except click.ClickException as error:
         _fail(error.format_message())
     except click.Abort:
         sys.exit(INTERRUPTED)
+
+
+def _show_what_the_terminal_can() -> None:
+    """Where it has only some characters, ASCII say, others become question marks."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+
+
+@contextmanager
+def _written_whole() -> Iterator[None]:
+    """Make sure that all that the block prints is written, however it ends.
+
+    Raises:
+        InputError: it cannot be: the disk is full.
+        SystemExit: nobody reads it any more.
+    """
+    try:
+        try:
+            yield
+        finally:
+            sys.stdout.flush()
+    except OSError as error:
+        if error.filename is not None:  # not of a stream, which has no name
+            raise
+        # What is left in the buffer would fail again, and be reported, when the interpreter ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if isinstance(error, BrokenPipeError):
+            sys.exit(MISSED)
+        raise InputError(f"the output cannot be written: {error.strerror}") from error
 
 
 def _fail(message: str) -> None:

@@ -72,7 +72,7 @@ def _print_graph(console: Console, experiment: Experiment, start: Any) -> None:
     for row in range(graph.n):
         senses = [str(agents.number(i)) for k, i in graph.edges if k == row]
         table.add_row(str(agents.number(row)), ", ".join(senses) or "-", place(start[row]))
-    console.print(table)
+    print_table(console, table)
 
 
 def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any) -> None:

@@ -1,0 +1,120 @@
+"""Any terminal: narrow, without a letter of Greek, full, gone."""
+
+from __future__ import annotations
+
+import io
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rich.console import Console
+
+from scenarios.terminal import new_table, print_table
+
+ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
+
+Cli = Callable[..., tuple[int, str, str]]
+
+PRINTING = (
+    ("list",),
+    ("keys",),
+    ("show", "shape"),
+    ("show", "maneuver-testbed"),
+    ("show", "random-50"),
+    ("laws", "--starts", "1"),
+    ("audit", "shape", "--starts", "0"),
+    ("run", "maneuver-testbed", "--plant", "single_integrator", "--duration", "1", "--no-recording"),
+    ("sweep", "shape", "--plant", "single_integrator", "--seeds", "0:2", "--vary", "goal.angle_error_sum_rad=1,2"),
+)
+
+
+@pytest.mark.parametrize("command", PRINTING, ids=" ".join)
+def test_no_command_cuts_a_character_away_at_80_columns(
+    command: tuple[str, ...], cli: Cli, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    _, out, err = cli(*command)
+    assert out
+    assert err == ""
+    assert "…" not in out
+
+
+@pytest.mark.parametrize("terminal", ["none", "plain", "dumb"])
+@pytest.mark.parametrize("width", [20, 80, 100])
+def test_a_table_keeps_every_digit_whatever_shows_it(terminal: str, width: int) -> None:
+    printed = io.StringIO()
+    console = {
+        "none": Console(file=printed, width=width),
+        "plain": Console(file=printed, width=width, force_terminal=True, _environ={"TERM": "xterm"}),
+        "dumb": Console(file=printed, width=width, force_terminal=True, _environ={"TERM": "dumb"}),
+    }[terminal]
+    table = new_table("agent", *(f"quantity {k} (m)" for k in range(12)), title="Numbers")
+    numbers = [f"{k}.{'123456789' * 2}" for k in range(12)]
+    table.add_row("1", *numbers)
+    print_table(console, table)
+    text = printed.getvalue()
+    assert all(number in text for number in numbers)
+    assert all(f"quantity {k} (m)" in text for k in range(12))
+    assert "…" not in text
+    assert console.width == (80 if terminal == "dumb" else width)
+
+
+@given(widths=st.lists(st.integers(1, 30), min_size=2, max_size=12), width=st.integers(40, 200))
+def test_a_wide_table_goes_on_below_beside_its_first_column(widths: list[int], width: int) -> None:
+    printed = io.StringIO()
+    console = Console(file=printed, width=width)
+    table = new_table("agent", *(str(k) for k in range(len(widths))))
+    for agent in ("one", "two"):
+        table.add_row(agent, *("x" * each for each in widths))
+    print_table(console, table)
+    lines = printed.getvalue().splitlines()
+    parts = lines.count("")
+    assert sum(line.count("x") for line in lines) == 2 * sum(widths)
+    assert [line.split()[0] for line in lines if line] == ["agent", "one", "two"] * (parts + 1)
+    assert max(map(len, lines)) <= width
+    if 5 + sum(each + 2 for each in widths) <= width - 2 * len(widths):
+        assert parts == 0
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "latin-1"])
+def test_letters_that_a_terminal_does_not_have_become_question_marks(encoding: str) -> None:
+    command = [sys.executable, "-m", "scenarios"]
+    environment = os.environ | {"PYTHONIOENCODING": encoding, "PYTHONUTF8": "0"}
+    shown = subprocess.run(
+        [*command, "show", "shape", "--set", f'title="{ALPHA}"'], capture_output=True, env=environment
+    )
+    assert shown.returncode == 0
+    assert shown.stdout.decode(encoding).startswith("shape: ?\n")
+    refused = subprocess.run([*command, "show", ALPHA], capture_output=True, env=environment)
+    assert (refused.returncode, refused.stderr.count(b"\n")) == (2, 1)
+
+
+def unheard(command: str, stdout: int) -> tuple[int, str]:
+    """Exit code and complaint of a command whose output goes to a file descriptor."""
+    done = subprocess.run(
+        [sys.executable, "-m", "scenarios", command], stdout=stdout, stderr=subprocess.PIPE, text=True
+    )
+    return done.returncode, done.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a file that is always full")
+@pytest.mark.parametrize("command", ["list", "keys"])
+def test_output_that_cannot_be_written_is_one_line(command: str) -> None:
+    with open("/dev/full", "w") as full:
+        told = unheard(command, full.fileno())
+    assert told == (2, "formation: the output cannot be written: No space left on device\n")
+
+
+@pytest.mark.parametrize("command", ["list", "--help"])
+def test_a_reader_that_goes_away_is_told_nothing(command: str) -> None:
+    read, write = os.pipe()
+    os.close(read)
+    try:
+        assert unheard(command, write) == (1, "")
+    finally:
+        os.close(write)
