@@ -1,6 +1,7 @@
 # The whole workshop. `make help` lists the targets.
 PYTHON ?= python3
 VENV := .venv
+LOWEST := .venv-lowest
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 SCENARIO ?= shape
@@ -8,7 +9,7 @@ SCENARIO ?= shape
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install run test quick lint check bench figures fuzz kills pairs evidence screenshots clean
+.PHONY: help install run test quick lint check bench figures lowest mutants fuzz kills pairs evidence screenshots clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -30,6 +31,15 @@ test: lint ## lint, type check and the whole test suite
 
 quick: $(STAMP) ## the test suite without the Monte Carlo runs
 	$(BIN)/pytest -n auto -m 'not slow'
+
+lowest: ## the quick tests with every dependency at its lower bound, in .venv-lowest
+	$(PYTHON) -m venv $(LOWEST)
+	$(LOWEST)/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt uv
+	$(LOWEST)/bin/uv pip install --quiet --python $(LOWEST) --resolution lowest-direct --editable '.[dev]'
+	$(LOWEST)/bin/pytest -n auto -m 'not slow'
+
+mutants: $(STAMP) ## how many of 150 small changes of formation/, and of robots/, the tests notice (about an hour)
+	$(BIN)/python tests/mutation/run.py
 
 lint: $(STAMP) ## ruff, mypy and the order of the floors
 	$(BIN)/ruff check .
@@ -73,5 +83,5 @@ screenshots: $(STAMP) ## pictures of the viewer for docs/recording.md (needs xvf
 	$(BIN)/python docs/screenshots.py
 
 clean: ## remove the environment, caches and runs
-	rm -rf $(VENV) runs build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache .benchmarks
+	rm -rf $(VENV) $(LOWEST) runs build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache .benchmarks
 	find formation robots scenarios tests -name __pycache__ -type d -exec rm -rf {} +

@@ -57,9 +57,8 @@ def run_to_folder(
         console.print(escape(remark), style="bold")
     folder = out or run_folder.default_path(experiment.file.name, experiment.plant, seed)
     with run_folder.writing(folder) as scratch, Encoder() if recorded else nullcontext() as encoder:
-        compile_filter(experiment.safety)
-        view = None if live is None else _open_view(experiment, seed, live, console)
         view = _open_view(experiment, seed, live, console)
+        compile_filter(experiment.safety)
         with progress_bar(console, experiment.file.name) as advance:
             trajectory = simulate(experiment, seed, advance, view)
         metrics = measure(experiment, trajectory)
