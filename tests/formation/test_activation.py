@@ -4,7 +4,16 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formation import AngleLaw, SequentialActivation, collision_margins, end_configuration, random_target
+from formation import (
+    AngleLaw,
+    SensingGraph,
+    SequentialActivation,
+    TargetFormation,
+    collision_margins,
+    decay_rates,
+    end_configuration,
+    random_target,
+)
 
 
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 8))
@@ -52,3 +61,34 @@ def test_the_margin_is_the_condition_of_the_lemma() -> None:
     np.testing.assert_allclose(collision_margins(target, start, end), [nearest])
     start[2] += [3.0 * nearest, 0.0]
     np.testing.assert_allclose(collision_margins(target, start, end), [-2.0 * nearest])
+
+
+def test_a_follower_has_arrived_by_its_distance_which_is_its_speed_over_its_rate() -> None:
+    """Of two velocities of one size that at the slower follower means the greater distance."""
+    target = random_target(12, np.random.default_rng(7))
+    rates = decay_rates(target)
+    tolerance = 0.01
+    for follower in range(10):
+        if (target.graph.neighbours[follower] >= 2).any():
+            continue  # it waits for others
+        ready = [k for k, pair in enumerate(target.graph.neighbours) if set(pair) <= {0, 1, follower + 2}]
+        for share, arrived in ((0.999, True), (1.001, False)):
+            activation = SequentialActivation(target, tolerance)
+            velocity = np.full((12, 2), 9.0)
+            velocity[follower + 2] = share * tolerance * rates[follower], 0.0
+            activation.update(velocity)
+            expected = {k + 2 for k in ready if arrived or follower + 2 not in target.graph.neighbours[k]}
+            assert set(np.flatnonzero(activation.active)) == expected | {0, 1}
+
+
+def test_who_has_arrived_stays_so_while_others_come() -> None:
+    """Agent 5 waits for 3 and 4, which arrive one after the other, each only for an instant."""
+    graph = SensingGraph(np.array([[0, 1], [0, 1], [2, 3]]))
+    target = TargetFormation(graph, np.array([[0.0, 0.0], [1.0, 0.0], [0.3, 0.8], [0.6, -0.7], [1.5, 0.4]]))
+    activation = SequentialActivation(target, 0.01)
+    for arrived in (2, 3):
+        assert not activation.active[4]
+        velocity = np.full((5, 2), 9.0)
+        velocity[arrived] = 0.0
+        activation.update(velocity)
+    assert activation.active.all()

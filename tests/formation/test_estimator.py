@@ -53,3 +53,13 @@ def test_bad_edges_and_gains_are_refused() -> None:
         VelocityEstimator(3, [[1, 8]], 1.0)
     with pytest.raises(ValueError, match="gain must be a positive"):
         VelocityEstimator(2, [[1, 0]], 0.0)
+
+
+@pytest.mark.parametrize("step", [0.01, 0.5, 3.0])
+def test_an_estimate_covers_the_share_of_its_way_that_an_exponential_does(step: float) -> None:
+    """Agent 2 hears the leader alone: after each period 1 - exp(-kappa h) of what was left is done, exactly."""
+    estimator = VelocityEstimator(2, [[1, 0]], gain=2.0)
+    estimates, velocity = np.zeros((2, 2)), np.array([0.3, -0.1])
+    for periods in (1, 2, 3):
+        estimates = estimator.step(estimates, velocity, step)
+        np.testing.assert_allclose(estimates[1], (1.0 - np.exp(-2.0 * step * periods)) * velocity, rtol=1e-12)

@@ -91,3 +91,16 @@ def test_an_angle_across_triangles_is_refused() -> None:
     graph = SensingGraph(np.array([[0, 1], [0, 1]]))
     with pytest.raises(ValueError, match=r"alpha\(1;3,4\) belongs to no follower's triangle"):
         target_from_angles(graph, AngleSet(np.array([[0, 2, 3]])), [1.0])
+
+
+@pytest.mark.parametrize(("surplus", "closes"), [(2.9e-6, True), (3.1e-6, False), (-2.9e-6, True), (-3.1e-6, False)])
+def test_three_angles_may_miss_half_a_turn_by_the_tolerance_of_each(surplus: float, closes: bool) -> None:
+    graph = SensingGraph(np.array([[0, 1]]))
+    angles = AngleSet(np.array([(0, 2, 1), (1, 0, 2), (2, 1, 0)]))
+    values = angles.measure(np.array([[0.0, 0.0], [1.0, 0.0], [0.2, 0.9]]))
+    values[1] += surplus
+    if closes:
+        target_from_angles(graph, angles, values, tolerance=1e-6)
+    else:
+        with pytest.raises(ValueError, match="cannot close it"):
+            target_from_angles(graph, angles, values, tolerance=1e-6)

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formation import random_target
+from formation.random_target import _disc
 
 
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 30), degrees=st.floats(1.0, 25.0))
@@ -27,3 +28,12 @@ def test_a_disc_that_is_too_small_is_refused_with_the_agent() -> None:
         random_target(30, np.random.default_rng(0), min_separation=1.0)
     with pytest.raises(ValueError, match="at least 3 agents"):
         random_target(2, np.random.default_rng(0))
+
+
+def test_places_are_drawn_with_the_same_density_all_over_the_disc() -> None:
+    """Of a uniform disc a quarter lies within half the radius; its radii squared are uniform."""
+    places = _disc(20_000, 2.0, np.random.default_rng(0))
+    squared = (places**2).sum(axis=1) / 4.0
+    assert squared.max() <= 1.0
+    np.testing.assert_allclose(np.quantile(squared, [0.25, 0.5, 0.75]), [0.25, 0.5, 0.75], atol=0.015)
+    np.testing.assert_allclose(places.mean(axis=0), 0.0, atol=0.03)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from robots import GTERNAL, Arena, NearIdentityDiffeomorphism, judge, make_world
 from robots.obstacles import Obstacle, disc
 from robots.safety import kernel
+from robots.testbed import collision_centres
 from robots.worlds.contact import Contact
 
 NID = NearIdentityDiffeomorphism(0.025)
@@ -114,4 +115,8 @@ def test_a_robot_that_drives_at_an_obstacle_is_stopped_and_the_verdict_says_so()
     (violation,) = verdict.violations
     assert violation.kind == "obstacle"
     assert violation.first.robots == (0,)
-    assert violation.first.value < 0.0675
+    assert violation.first.value <= 0.0675
+    gaps = np.hypot(*(collision_centres(np.array(poses))[:, 0] - [0.4, 0.0]).T) - 0.1
+    assert violation.steps == (gaps <= 0.0675).sum()
+    assert violation.worst.value == pytest.approx(gaps.min())
+    assert violation.first.time == t[int((gaps <= 0.0675).argmax())]

@@ -88,3 +88,16 @@ def test_the_same_generator_gives_the_same_noise() -> None:
     assert first is not None
     assert second is not None
     assert all((a == b).all() for a, b in zip(first, second, strict=True))
+
+
+@given(
+    e=st.tuples(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0)),
+    turn=st.floats(-1.0, 1.0),
+    offset=st.tuples(st.floats(-0.1, 0.1), st.floats(-0.1, 0.1)),
+)
+def test_a_measurement_is_turned_and_then_shifted_by_its_noise(
+    e: tuple[float, float], turn: float, offset: tuple[float, float]
+) -> None:
+    noise = np.array([[np.cos(turn), np.sin(turn)]]), np.array([offset])
+    measured = complex(*disturb(np.array([e]), noise)[0])
+    assert abs(measured - (complex(*e) * np.exp(1j * turn) + complex(*offset))) < 1e-12

@@ -172,3 +172,20 @@ def test_ten_thousand_agents_take_one_call() -> None:
     z = as_complex(p)
     expected = -np.conj(a_k) * (a_i * (z[i] - z[k]) + a_j * (z[j] - z[k]))
     np.testing.assert_allclose(as_complex(velocity)[k], expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize("rate", [0.5, -0.4999, -3.0, 2j])
+def test_the_matrix_exponential_is_exact_to_rounding(rate: complex) -> None:
+    jordan = np.array([[rate, 1.0], [0.0, rate]])
+    expected = np.exp(rate) * np.array([[1.0, 1.0], [0.0, 1.0]])
+    np.testing.assert_allclose(matrix_exponential(jordan), expected, rtol=2e-14, atol=1e-15)
+
+
+def test_who_is_there_at_the_start_and_stays_has_arrived_at_0() -> None:
+    target = random_target(4, np.random.default_rng(3), min_angle=np.radians(30.0))
+    errors = np.zeros((4, 2))
+    errors[3] = 1e-4, 0.0
+    assert settling_bound(target, errors, 1e-3) == 0.0
+    errors[3] = 1e-3 * 1.0001, 0.0
+    assert settling_bound(target, errors, 1e-3, resolution=0.05) == 0.05
+    assert settling_bound(target, errors, 1e-9, horizon=0.1) is None
