@@ -6,9 +6,9 @@ import shutil
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from time import monotonic
 from copy import copy
 from dataclasses import replace
+from time import monotonic
 
 from rich.console import Console, ConsoleDimensions
 from rich.markup import escape

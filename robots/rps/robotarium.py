@@ -283,13 +283,18 @@ def ignored(names: list[str], known: list[str]) -> None:
 
 
 def _sentence(violation: Violation) -> str:
-    who = " and ".join(str(robot) for robot in violation.robots)
+    first, worst = violation.first, violation.worst
+    who = " and ".join(str(robot) for robot in worst.robots)
     what = {
-        "floor": f"robot {who} leaves the floor by {violation.value:.3f} m",
-        "collision": f"robots {who} come within {COLLISION_DISTANCE} m: {violation.value:.3f} m",
-        "obstacle": f"robot {who} comes within {violation.value:.3f} m of an obstacle",
-        "actuator": f"robot {who} is commanded {violation.value:.2f} rad/s at a wheel, which is clipped",
+        "floor": f"robot {who} leaves the floor by {worst.value:.3f} m",
+        "collision": f"robots {who} come within {COLLISION_DISTANCE} m: {worst.value:.3f} m",
+        "obstacle": f"robot {who} comes within {worst.value:.3f} m of an obstacle",
+        "actuator": f"robot {who} is commanded {worst.value:.10g} rad/s at a wheel, which is clipped",
     }[violation.kind]
     severity = "WARNING" if violation.kind == "actuator" else "ERROR"
-    x, y = violation.place
-    return f"{severity}: {what}, first at {violation.time:.2f} s near ({x:.2f}, {y:.2f}) m; {violation.steps} steps"
+    x, y = worst.place
+    other = "" if first.robots == worst.robots else f" by robot {' and '.join(map(str, first.robots))}"
+    return (
+        f"{severity}: {what}; worst at {worst.time:.2f} s near ({x:.2f}, {y:.2f}) m, "
+        f"first at {first.time:.2f} s{other}, {violation.steps} steps"
+    )

@@ -11,8 +11,8 @@ import numpy as np
 from formation import agents
 from robots.testbed import Occurrence, Violation
 from scenarios.definition.experiment import Experiment
-from scenarios.measures.late_rates import predicted_late_rates
 from scenarios.measures.contacts import contacts
+from scenarios.measures.late_rates import predicted_late_rates
 from scenarios.measures.metrics import Metrics, PhaseEnd
 from scenarios.measures.safety_result import safety_result
 from scenarios.measures.tracking import Tracking

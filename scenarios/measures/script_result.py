@@ -9,7 +9,7 @@ import numpy as np
 
 from robots.rps.robotarium import Robotarium
 from robots.rps.simulation import Record
-from robots.testbed import Verdict, Violation, collision_centres, judge, separation
+from robots.testbed import Occurrence, Verdict, Violation, collision_centres, judge, separation
 from robots.worlds import NOTHING
 from scenarios.measures.result import versions
 from scenarios.simulation.script.execute import Ending
@@ -112,10 +112,15 @@ def _violation(violation: Violation) -> dict[str, Any]:
     return {
         "kind": violation.kind,
         "steps": violation.steps,
-        "first": {
-            "time_s": violation.time,
-            "robots": list(violation.robots),
-            "place_m": list(violation.place),
-            "value": violation.value,
-        },
+        "first": _occurrence(violation.first),
+        "worst": _occurrence(violation.worst),
+    }
+
+
+def _occurrence(occurrence: Occurrence) -> dict[str, Any]:
+    return {
+        "time_s": occurrence.time,
+        "robots": list(occurrence.robots),
+        "place_m": list(occurrence.place),
+        "value": occurrence.value,
     }
