@@ -66,7 +66,7 @@ figures: $(STAMP) ## draw the figures of the documents, the film included
 	$(BIN)/formation animate runs/figures/maneuver-testbed --speed 12 --fps 12
 	cp runs/figures/maneuver-testbed/animation.gif docs/images/maneuver-testbed.gif
 
-fuzz: $(STAMP) ## 8,000 mutants of scenarios, run folders and options (about 15 minutes)
+fuzz: $(STAMP) ## 6,500 mutants of scenarios, run folders and options (about 15 minutes)
 	$(BIN)/python -m tests.fuzz
 
 kills: $(STAMP) ## 60 commands killed at random moments, 20 sweeps stopped and continued (about 20 minutes)

@@ -110,6 +110,8 @@ def _damage_json(run: Path, rng: random.Random) -> None:
 
 def _damage_states(run: Path, rng: random.Random) -> None:
     path = run / "trajectory.npz"
+    if not path.is_file():  # an earlier damage put a pipe there
+        return
     try:
         with np.load(path) as data:
             states = dict(data)
