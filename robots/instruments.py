@@ -117,9 +117,9 @@ class Instruments:
         self._imperfections = imperfections or Imperfections()
         self._places = RelativePositionSensor(self._edges, self._imperfections.position, self._imperfections.bearing)
 
-    def measure(self, points: Real, headings: Real) -> Real:
+    def measure(self, points: Real, headings: Real, own: Real | None = None) -> Real:
         """(..., m, 2) true relative positions in body frames; see :class:`robots.sensors.RelativePositionSensor`."""
-        return self._places.measure(points, headings)
+        return self._places.measure(points, headings, own)
 
     def draw(self, rng: np.random.Generator) -> Disturbance | None:
         """One period's disturbance of one run; None where all is perfect, and then nothing is drawn.

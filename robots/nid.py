@@ -49,6 +49,15 @@ class NearIdentityDiffeomorphism:
         """Body-frame velocities (..., 2) of the projected point, m/s, of twists (..., 2)."""
         return twist * np.array([1.0, self.projection_distance])
 
+    def turning_limit(self, period: float, delay_periods: int = 0) -> float:
+        """The speed, m/s, above which the heading does not settle along the velocity that a robot is told.
+
+        The heading error obeys phi(k + 1) = phi(k) - (v T / l) sin phi(k - d): v T / l < 2 sin(pi / (2 (2 d + 1))), 2
+        without delay. The delay d is that of the frame in which the command was computed: 0 where the robot undoes its
+        own turn.
+        """
+        return 2.0 * self.projection_distance / period * float(np.sin(np.pi / (2.0 * (2 * delay_periods + 1))))
+
     def project(self, poses: Real) -> Real:
         """Projected points (..., 2) of poses (..., 3) of the axle's centre."""
         theta = poses[..., 2]

@@ -21,12 +21,16 @@ class RelativePositionSensor:
         self._observer, self._observed = np.asarray(edges, dtype=np.intp).T
         self._position_noise, self._bearing_noise = position_noise, bearing_noise
 
-    def measure(self, points: Real, headings: Real) -> Real:
-        """(..., m, 2) relative positions of projected points (..., n, 2), metres, each in its observer's body frame."""
+    def measure(self, points: Real, headings: Real, own: Real | None = None) -> Real:
+        """(..., m, 2) relative positions of projected points (..., n, 2), metres, each in its observer's body frame.
+
+        ``own`` (..., n, 2) is where the observers are, where that is not where they are sensed by others.
+        """
         p = points.view(np.complex128)[..., 0]
+        here = p if own is None else own.view(np.complex128)[..., 0]
         frame = np.conj(headings.view(np.complex128)[..., 0])
         e = p.take(self._observed, axis=-1)
-        e -= p.take(self._observer, axis=-1)
+        e -= here.take(self._observer, axis=-1)
         e *= frame.take(self._observer, axis=-1)
         return e[..., None].view(np.float64)
 

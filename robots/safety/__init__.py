@@ -6,7 +6,9 @@ from robots.arena import Arena
 from robots.drive import DifferentialDrive
 from robots.nid import NearIdentityDiffeomorphism
 from robots.safety.barrier import FilterSettings as FilterSettings
+from robots.safety.barrier import delayed_settings as delayed_settings
 from robots.safety.barrier import sampling_loss as sampling_loss
+from robots.safety.protocol import Distributed as Distributed
 from robots.safety.protocol import Noise as Noise
 from robots.safety.protocol import SafetyFilter as SafetyFilter
 

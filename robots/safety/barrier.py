@@ -45,7 +45,7 @@ longer contains the body); things that move; and arriving: safety comes before i
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -107,6 +107,29 @@ WHEEL_MARGIN = 1e-6
 def stuck_limit(settings: FilterSettings) -> float:
     """Seconds: the stuck time at which a robot has turned all the way, and tries the other side."""
     return settings.stuck_time + STUCK_TURN_LIMIT / STUCK_TURN_RATE
+
+
+SENSED_BEYOND = 0.15
+"""Metres by which a robot has to be sensed before its row binds, as with the defaults."""
+
+DELAY_GAIN = 0.5
+"""gamma tau under a delay tau. Two robots that sense each other late obey dy/dt = -(gamma / 2) (y(t) + y(t - tau)), y
+the sensed distance beyond Ds: it decays without overshoot, and the true distance stays ahead of Ds by 1 - gamma tau / 2."""
+
+
+def delayed_settings(settings: FilterSettings, delay: float, speed: float) -> FilterSettings:
+    """The settings that keep the barrier's promise where others are sensed ``delay`` seconds late.
+
+    With its own motion undone a robot errs by the others' motion alone, at most ``speed`` times ``delay`` metres each.
+    Two robots answer for half of the barrier each, so each adds half of that to Ds; the sensing range keeps its
+    distance beyond Ds, and gamma shrinks to :data:`DELAY_GAIN` over the delay where it is larger.
+    """
+    if delay == 0.0:
+        return settings
+    distance = settings.safe_distance + speed * delay / 2.0
+    reach = max(settings.sensing_range, distance + SENSED_BEYOND)
+    gain = min(settings.gain, DELAY_GAIN / delay)
+    return replace(settings, safe_distance=distance, sensing_range=reach, gain=gain)
 
 
 def turn_weight(drive: DifferentialDrive, nid: NearIdentityDiffeomorphism) -> float:

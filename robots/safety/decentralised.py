@@ -42,6 +42,8 @@ class DecentralisedFilter:
         arena: its walls and obstacles; None for an endless floor.
     """
 
+    distributed = True
+
     def __init__(
         self,
         shape: tuple[int, ...],
@@ -78,9 +80,19 @@ class DecentralisedFilter:
         self._batch = batch
 
     def filter(
-        self, points: Real, headings: Real, feedback: Real, common: Real, period: float, noise: Noise | None = None
+        self,
+        points: Real,
+        headings: Real,
+        feedback: Real,
+        common: Real,
+        period: float,
+        noise: Noise | None = None,
+        seen: Real | None = None,
     ) -> Real:
-        """See :class:`robots.safety.SafetyFilter`."""
+        """See :class:`robots.safety.SafetyFilter`.
+
+        ``seen`` (..., n, 2) is where each robot was when the others sensed it, metres; where it is, if absent.
+        """
         u = np.empty(points.shape)
         batch = (*self._batch, 2)
         turns, offsets = self._silence, self._silence
@@ -89,6 +101,7 @@ class DecentralisedFilter:
             turns, offsets = noise.turns.reshape(full), noise.offsets.reshape(full)
         kernel.step(
             points.reshape(batch),
+            (points if seen is None else seen).reshape(batch),
             headings.reshape(batch),
             feedback.reshape(batch),
             common.reshape(batch),

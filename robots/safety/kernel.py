@@ -203,6 +203,11 @@ def _bucket(cx: int, cy: int, size: int) -> int:
 
 
 @compiled
+def _cell(coordinate: float, side: float) -> int:
+    return int(np.floor(min(max(coordinate / side, -1e9), 1e9)))
+
+
+@compiled
 def _fill_grid(points: Real, side: float, cells: Index, first: Index, order: Index) -> None:
     """Sort robots into cells of a side, metres, hashed into buckets: ``order[first[b]:first[b + 1]]`` is bucket b.
 
@@ -215,7 +220,7 @@ def _fill_grid(points: Real, side: float, cells: Index, first: Index, order: Ind
         cells[i, 2] = -1
         if _finite(points[i, 0], points[i, 1]):
             for axis in range(2):
-                cells[i, axis] = np.int64(np.floor(min(max(points[i, axis] / side, -1e9), 1e9)))
+                cells[i, axis] = _cell(points[i, axis], side)
             cells[i, 2] = _bucket(cells[i, 0], cells[i, 1], size)
             first[cells[i, 2]] += 1
     for b in range(size):
@@ -291,6 +296,7 @@ def _bounded(x: float, y: float) -> tuple[float, float]:
 @compiled
 def step(
     points: Real,
+    seen: Real,
     headings: Real,
     feedback: Real,
     common: Real,
@@ -313,6 +319,7 @@ def step(
 
     Args:
         points, headings: (B, n, 2) projected points, metres, and unit heading vectors.
+        seen: (B, n, 2) where the others sense each robot, metres; ``points`` again unless they sense it late.
         feedback, common: (B, n, 2) the law without v_r, and v_r, m/s, in body frames.
         stuck: (B, n) the state tau, seconds; advanced in place.
         side: (B, n) the side to which a robot turns, 1 left or -1 right; advanced in place.
@@ -341,8 +348,8 @@ def step(
     window = reach - safe
     noisy = turns.shape[2] > 0
     for run in range(batch):
-        p = points[run]
-        _fill_grid(p, reach, cells, first, order)
+        p, q = points[run], seen[run]
+        _fill_grid(q, reach, cells, first, order)
         for i in range(n):
             x, y = p[i, 0], p[i, 1]
             hx, hy = headings[run, i, 0], headings[run, i, 1]
@@ -360,14 +367,15 @@ def step(
             count = np.int64(WHEEL_ROWS)  # a literal would be a type of its own, and compile all of it twice
             law = np.hypot(gx, gy)
             crowding = 0.0
+            column, line = _cell(x, reach), _cell(y, reach)
             for cell in range(9):
-                cx, cy = cells[i, 0] + cell % 3 - 1, cells[i, 1] + cell // 3 - 1
+                cx, cy = column + cell % 3 - 1, line + cell // 3 - 1
                 b = _bucket(cx, cy, size)
                 for place in range(first[b], first[b + 1]):
                     j = order[place]
                     if j == i or cells[j, 0] != cx or cells[j, 1] != cy:
                         continue
-                    dx, dy = x - p[j, 0], y - p[j, 1]
+                    dx, dy = x - q[j, 0], y - q[j, 1]
                     if dx * dx + dy * dy >= reach * reach:
                         continue
                     ex, ey = hx * dx + hy * dy, hx * dy - hy * dx

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,4 +63,24 @@ class SafetyFilter(Protocol):
             period: seconds.
             noise: of the measurements; None for perfect sensors.
         """
+        ...
+
+
+@runtime_checkable
+class Distributed(SafetyFilter, Protocol):
+    """A filter in which every robot answers for itself, from what it senses."""
+
+    distributed: bool
+
+    def filter(
+        self,
+        points: Real,
+        headings: Real,
+        feedback: Real,
+        common: Real,
+        period: float,
+        noise: Noise | None = None,
+        seen: Real | None = None,
+    ) -> Real:
+        """As above; ``seen`` (..., n, 2) is where each robot was when the others sensed it, metres."""
         ...

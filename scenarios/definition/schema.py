@@ -184,6 +184,13 @@ class SensorTable(Table):
     """Standard deviation of each robot's constant compass error."""
     delay_periods: Annotated[int, Field(strict=True, ge=0, le=LONGEST_RUN)] = 0
     """Control periods by which all measurements lag."""
+    own_motion: Literal["measured", "turn", "unknown"] = "measured"
+    """What a robot knows of its own motion since a measurement was taken, and undoes before it uses it: turn and
+    displacement (gyro and encoders), its turn, or nothing."""
+    gyro_noise_deg_s: NotNegative = 0.0
+    """Standard deviation of a robot's turning speed as it measures it, drawn each control period; for delays alone."""
+    encoder_noise_m_s: NotNegative = 0.0
+    """Standard deviation of each coordinate of its velocity as its encoders have it; likewise."""
 
 
 class SafetyTable(Table):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 
 from formation import Phase, SequentialActivation
 from robots.instruments import Disturbance
+from robots.own_motion import OwnMotion, Sensed
 from scenarios.definition.experiment import Experiment
 from scenarios.simulation.guard import make_guard
 
@@ -41,9 +41,11 @@ class Controller:
         self._delta: Real | None = None
         self.guard = make_guard(experiment, batch)
         scenario = experiment.scenario
-        self._delay = scenario.sensor.delay_periods
-        self._history: deque[tuple[Real, Real]] = deque(maxlen=self._delay + 1)
-        self._compass_error = self._draw_compass(np.radians(scenario.sensor.compass_bias_deg), experiment.n)
+        table = scenario.sensor
+        self._own_motion = OwnMotion(
+            table.delay_periods, table.own_motion, np.radians(table.gyro_noise_deg_s), table.encoder_noise_m_s
+        )
+        self._compass_error = self._draw_compass(np.radians(table.compass_bias_deg), experiment.n)
         self._activation = None
         self.active = np.ones((*batch, experiment.n), dtype=bool)
         if scenario.law.activation == "sequential":
@@ -61,8 +63,7 @@ class Controller:
 
     def begin_period(self, points: Real, headings: Real, period: float) -> None:
         """Do what happens once per control period: draw noise, exchange estimates of v_r, activate followers."""
-        self._history.append((points, headings))
-        points, headings = self._sensed(points, headings)
+        self._own_motion.begin_period(points, headings, period, self._generators)
         draws = [draw for rng in self._generators if (draw := self._instruments.draw(rng)) is not None]
         self._disturbance = Disturbance.stack(draws, self._batch) if draws else None
         if self.guard is not None:
@@ -71,28 +72,26 @@ class Controller:
         if self._estimator is not None and self._velocity is not None:
             self._velocity = self._estimator.step(self._velocity, self._commanded, period)
         if self._activation is not None:
-            self._activation.update(self._feedback(points, headings))
+            self._activation.update(self._feedback(self._own_motion.sense(points, headings)))
 
     def __call__(self, points: Real, headings: Real) -> Real:
-        points, headings = self._sensed(points, headings)
-        feedback = self._feedback(points, headings)
+        sensed = self._own_motion.sense(points, headings)
+        feedback = self._feedback(sensed)
         if self._activation is not None:
             feedback *= self.active[..., None]
         if self._velocity is None:
-            return feedback if self.guard is None else self.guard(points, headings, feedback, np.zeros_like(feedback))
+            return feedback if self.guard is None else self.guard(sensed, feedback, np.zeros_like(feedback))
         velocity = np.ascontiguousarray(self._velocity).view(np.complex128)
-        common = (velocity * self._compass(headings)).view(np.float64)
-        return feedback + common if self.guard is None else self.guard(points, headings, feedback, common)
+        common = (velocity * self._compass(sensed.headings)).view(np.float64)
+        return feedback + common if self.guard is None else self.guard(sensed, feedback, common)
 
-    def _sensed(self, points: Real, headings: Real) -> tuple[Real, Real]:
-        """The state that the measurements are of: that of ``delay_periods`` ago, the first one until then."""
-        return self._history[0] if self._delay else (points, headings)
-
-    def _feedback(self, points: Real, headings: Real) -> Real:
+    def _feedback(self, sensed: Sensed) -> Real:
         """The law's own velocities, without v_r."""
         disturbance = self._disturbance
-        measured = self._instruments.deliver(self._instruments.measure(points, headings), disturbance)
-        compass = self._compass(headings).view(np.float64) if self._law.needs_compass else None
+        measured = self._instruments.deliver(
+            self._instruments.measure(sensed.others, sensed.headings, sensed.own), disturbance
+        )
+        compass = self._compass(sensed.headings).view(np.float64) if self._law.needs_compass else None
         feedback = self._law(*measured, compass, self._delta)
         if disturbance is not None and disturbance.lost is not None:
             self._hold_still(feedback, disturbance.lost)

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.safety import Noise, SafetyFilter, make_filter
+from robots.own_motion import Sensed
+from robots.safety import Distributed, Noise, SafetyFilter, make_filter
 from robots.safety.protocol import BLOCKERS, WALLS
 from scenarios.definition.experiment import Experiment
 
@@ -26,6 +27,7 @@ class Guard:
     def __init__(self, experiment: Experiment, safety: SafetyFilter) -> None:
         table = experiment.scenario.sensor
         self.filter = safety
+        self._distributed = safety if isinstance(safety, Distributed) else None
         self._position, self._bearing = table.position_noise_m, np.radians(table.bearing_noise_deg)
         self._seen = (experiment.n, experiment.n + WALLS + len(experiment.arena.obstacles))
         self._observer, self._observed = experiment.graph.edges.T
@@ -51,9 +53,15 @@ class Guard:
         turns[..., self._observer, self._observed, :], offsets[..., self._observer, self._observed, :] = edge_noise
         self._noise = Noise(turns, offsets)
 
-    def __call__(self, points: Real, headings: Real, feedback: Real, common: Real) -> Real:
-        """The filtered velocities; see :meth:`robots.safety.SafetyFilter.filter`."""
-        return self.filter.filter(points, headings, feedback, common, self._period, self._noise)
+    def __call__(self, sensed: Sensed, feedback: Real, common: Real) -> Real:
+        """The filtered velocities; see :meth:`robots.safety.SafetyFilter.filter`.
+
+        A robot that filters for itself knows where it is now; a filter that works for all has what it is told.
+        """
+        where, frames, period, noise = sensed.others, sensed.headings, self._period, self._noise
+        if self._distributed is not None:
+            return self._distributed.filter(sensed.own, frames, feedback, common, period, noise, where)
+        return self.filter.filter(where, frames, feedback, common, period, noise)
 
 
 class SafetyRecord:
