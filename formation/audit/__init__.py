@@ -11,6 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from formation.audit.disturbed import bias, delay, growth, noise
 from formation.audit.measurements import (
     batches,
     compass,
@@ -53,6 +54,10 @@ def audit(subject: Subject, control_period: float, seed: int = 0) -> list[Findin
         "zero modes": zero_modes,
         "local stability": stability,
         "control period": lambda subject, _: sampling(subject, control_period),
+        "delay": lambda subject, _: delay(subject, control_period),
+        "growth of errors": lambda subject, _: growth(subject),
+        "bias": lambda subject, _: bias(subject),
+        "noise": lambda subject, _: noise(subject, control_period),
     }
     findings = [_attempt("output", output, subject, seed)]
     if findings[0].holds:

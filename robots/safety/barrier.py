@@ -114,7 +114,7 @@ SENSED_BEYOND = 0.15
 
 DELAY_GAIN = 0.5
 """gamma tau under a delay tau. Two robots that sense each other late obey dy/dt = -(gamma / 2) (y(t) + y(t - tau)), y
-the sensed distance beyond Ds: it decays without overshoot, and the true distance stays ahead of Ds by 1 - gamma tau / 2."""
+the sensed distance beyond Ds: it decays without overshoot, and the true distance stays ahead of Ds."""
 
 
 def delayed_settings(settings: FilterSettings, delay: float, speed: float) -> FilterSettings:

@@ -357,7 +357,7 @@ def step(
             vx, vy = common[run, i, 0], common[run, i, 1]
             blockers[run, i] = -1
             relaxation[run, i] = 0.0
-            if cells[i, 2] < 0 or not (_finite(hx, hy) and _finite(gx, gy) and _finite(vx, vy)):
+            if not (_finite(x, y) and _finite(hx, hy) and _finite(gx, gy) and _finite(vx, vy)):
                 u[run, i] = np.nan
                 intervention[run, i] = np.nan
                 continue

@@ -15,6 +15,7 @@ from scenarios.measures.forecast import NEAR, PhaseForecast, forecast
 from scenarios.measures.late_rates import expected_late_rates
 from scenarios.measures.remarks import remarks
 from scenarios.report.cells import NO_PREDICTION, digits, place
+from scenarios.report.closed_forms import print_closed_forms
 from scenarios.terminal import new_table, print_table
 
 
@@ -32,6 +33,7 @@ def print_experiment(console: Console, experiment: Experiment, seed: int) -> Non
         _print_forecast(console, experiment, predicted)
     else:
         console.print(f"\n{NO_PREDICTION}")
+    print_closed_forms(console, experiment, start)
     for remark in remarks(experiment, seed):
         console.print(escape(remark), style="bold")
     table = new_table("angle", "target (deg)")
