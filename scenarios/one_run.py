@@ -13,7 +13,7 @@ from rich.markup import escape
 from scenarios.definition.experiment import Experiment
 from scenarios.errors import plain
 from scenarios.measures.metrics import Metrics, measure
-from scenarios.measures.remarks import remarks
+from scenarios.measures.predictions.remarks import remarks
 from scenarios.measures.result import result
 from scenarios.recording import file, viewer
 from scenarios.recording.aside import Encoder

@@ -34,7 +34,7 @@ def export(
     from scenarios.definition.experiment import open_experiment
     from scenarios.export.portable import crowded, start_poses
     from scenarios.export.script import script
-    from scenarios.measures.remarks import remarks
+    from scenarios.measures.predictions.remarks import remarks
     from scenarios.storage.files import write_whole
 
     changes = options.changed(changes, safety=safety)

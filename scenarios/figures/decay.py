@@ -20,7 +20,7 @@ from scenarios.figures.style import COLUMN, SMALL, panel, sheet
 from scenarios.figures.timelines import MANY, TIME
 from scenarios.measures.late_rates import predicted_late_rates
 from scenarios.measures.metrics import Metrics
-from scenarios.measures.theory import motion, moves_exactly
+from scenarios.measures.predictions.theory import motion, moves_exactly
 from scenarios.measures.tracking import predicted_ends
 from scenarios.simulation.trajectory import Trajectory
 

@@ -1,16 +1,14 @@
 """From a trajectory to what it achieved: metrics, tracking, misfits, ``result.json``. Draws and writes nothing."""
 
 __all__ = [
+    "closed_forms",
     "contacts",
-    "forecast",
     "late_rates",
     "metrics",
-    "misfits",
-    "remarks",
+    "predictions",
     "result",
     "safety_result",
     "script_result",
-    "theory",
     "tracking",
     "window",
 ]

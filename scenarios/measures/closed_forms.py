@@ -16,7 +16,7 @@ from formation.analysis.noise import bias_gains, noise_power, noise_rms
 from formation.plane import as_complex
 from robots.safety import FilterSettings, delayed_settings
 from scenarios.definition.experiment import Experiment
-from scenarios.measures.theory import cascade, has_closed_loop
+from scenarios.measures.predictions.theory import cascade, has_closed_loop
 from scenarios.measures.tracking import predicted_ends
 
 Real = NDArray[np.float64]

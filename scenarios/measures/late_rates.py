@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from formation import agents, end_configuration
 from formation.plane import as_complex, as_vectors
 from scenarios.definition.experiment import Experiment
-from scenarios.measures.theory import has_closed_loop, motion, states
+from scenarios.measures.predictions.theory import has_closed_loop, motion, states
 from scenarios.simulation.trajectory import Trajectory
 
 Real = NDArray[np.float64]

@@ -9,7 +9,7 @@ from rich.console import Console
 from formation import agents
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.closed_forms import AMPLIFIES, CENTIMETRE, ClosedForms, Passages, closed_forms, passages
-from scenarios.terminal import new_table
+from scenarios.terminal import new_table, print_table
 
 Real = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ def _print_agents(console: Console, experiment: Experiment, found: ClosedForms, 
         if near is not None:
             cells += ["-"] * 3 if follower < 0 else _ways(near, follower)
         table.add_row(*cells)
-    console.print(table)
+    print_table(console, table)
 
 
 def _ways(near: Passages, follower: int) -> list[str]:

@@ -11,9 +11,9 @@ from rich.markup import escape
 from formation import agents, collision_margins, decay_rates, end_similarity, needs
 from scenarios.definition.experiment import Experiment
 from scenarios.documents import cell
-from scenarios.measures.forecast import NEAR, PhaseForecast, forecast
 from scenarios.measures.late_rates import expected_late_rates
-from scenarios.measures.remarks import remarks
+from scenarios.measures.predictions.forecast import NEAR, PhaseForecast, forecast
+from scenarios.measures.predictions.remarks import remarks
 from scenarios.report.cells import NO_PREDICTION, digits, place
 from scenarios.report.closed_forms import print_closed_forms
 from scenarios.terminal import new_table, print_table

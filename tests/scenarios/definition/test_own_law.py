@@ -15,8 +15,8 @@ from scenarios.definition.experiment import open_experiment
 from scenarios.definition.load import LIBRARY, load
 from scenarios.definition.own_law import NotLoaded, OwnLaw
 from scenarios.errors import InputError
-from scenarios.measures.forecast import forecast
 from scenarios.measures.metrics import measure
+from scenarios.measures.predictions.forecast import forecast
 from scenarios.measures.result import result
 from scenarios.simulation.loop import simulate
 from scenarios.storage import run_folder

@@ -5,7 +5,7 @@ import pytest
 
 from scenarios.definition.experiment import open_experiment
 from scenarios.measures.late_rates import expected_late_rates, measured_late_rates, predicted_late_rates
-from scenarios.measures.theory import motion
+from scenarios.measures.predictions.theory import motion
 from scenarios.simulation.loop import simulate
 
 SHORT = ("phases.1.displacement_m=[0.35,0.0]", "phases.2.displacement_m=[0.3,0.0]")

@@ -8,8 +8,8 @@ import pytest
 from formation import end_similarity, wrap
 from scenarios.definition.experiment import open_experiment
 from scenarios.errors import InputError
-from scenarios.measures.forecast import NEAR, forecast
 from scenarios.measures.metrics import measure
+from scenarios.measures.predictions.forecast import NEAR, forecast
 from scenarios.measures.tracking import predicted_ends, reference, track
 from scenarios.simulation.loop import simulate
 

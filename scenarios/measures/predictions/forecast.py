@@ -14,7 +14,7 @@ from formation.analysis.closed_loop import arrival
 from formation.analysis.exact import ideal, points
 from formation.plane import Complex, as_complex
 from scenarios.definition.experiment import Experiment
-from scenarios.measures.theory import moves_exactly
+from scenarios.measures.predictions.theory import moves_exactly
 from scenarios.measures.tracking import predicted_ends
 
 Real = NDArray[np.float64]

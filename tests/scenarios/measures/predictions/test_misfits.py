@@ -6,7 +6,7 @@ import pytest
 from formation import end_configuration
 from robots.testbed import COLLISION_DISTANCE
 from scenarios.definition.experiment import Experiment, open_experiment
-from scenarios.measures.misfits import misfits
+from scenarios.measures.predictions.misfits import misfits
 
 LEADER = np.array([0.0, 0.5])
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from formation import agents, decay_rates
 from scenarios.definition.experiment import Experiment
-from scenarios.measures.misfits import misfits, start_misfits
+from scenarios.measures.predictions.misfits import misfits, start_misfits
 
 LEAST_EXPONENT = 1.0
 """Rate times duration below which a follower cannot settle: its distance has not even shrunk by the factor e."""

@@ -12,8 +12,8 @@ from scenarios.cli import BAD_INPUT, DONE
 from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.definition.load import library
 from scenarios.errors import InputError
-from scenarios.measures.misfits import start_misfits
-from scenarios.measures.remarks import MOST_NAMED, remarks
+from scenarios.measures.predictions.misfits import start_misfits
+from scenarios.measures.predictions.remarks import MOST_NAMED, remarks
 
 Cli = Callable[..., tuple[int, str, str]]
 Varied = Callable[..., Experiment]
