@@ -11,6 +11,7 @@ from robots.arena import ROBOTARIUM_FLOOR, Arena
 from robots.model import COLLISION_CENTRE, CONTROL_PERIOD, RobotModel
 from robots.nid import NearIdentityDiffeomorphism
 from robots.worlds import PLANTS, make_world
+from robots.worlds.contact import SUBSTEPS, Contact
 
 Real = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -72,7 +73,7 @@ class Simulation:
     @property
     def poses(self) -> Real:
         """(N, 3) of the axles, headings not wrapped."""
-        return self._world.poses
+        return self._poses[-1]
 
     @property
     def steps(self) -> int:
@@ -81,7 +82,7 @@ class Simulation:
 
     def step(self, twist: Real) -> None:
         """Advance by one control period at commanded twists (N, 2)."""
-        before, velocity = self._poses[-1], _NID.velocity(twist)
+        before, velocity = self._poses[-1], _NID.velocity(self._compensated(twist))
         self._world.step(lambda points, headings: velocity, CONTROL_PERIOD)
         after = self._world.poses.copy()
         self.motion = _motion(before, after)
@@ -89,6 +90,20 @@ class Simulation:
         self._poses.append(after)
         self._commands.append(np.array(twist))
         self._contacts.append(self._world.contacts.copy())
+
+    def _compensated(self, twist: Real) -> Real:
+        """(N, 2) what to command so that axles move as ``twist`` (N, 2) says.
+
+        Chipmunk moves a body along the tangent of its way for a whole substep. The centre of mass of a robot that turns,
+        r ahead of its axle, leaves its circle by r (omega dt)^2 / 2 each time and takes the axle along: forward, until
+        a controller that looks at its goal from there never comes to rest. So much less forward is commanded.
+        """
+        if not isinstance(self._world, Contact):
+            return twist
+        drive = self._robot.drive
+        limited = drive.twist(drive.saturate(drive.wheel_speeds(twist), "clip"))
+        limited[:, 0] -= self._robot.chassis.centre_offset * limited[:, 1] ** 2 * CONTROL_PERIOD / SUBSTEPS / 2.0
+        return limited
 
     def recorded(self) -> Record:
         """All that happened so far."""

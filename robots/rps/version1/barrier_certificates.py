@@ -1,7 +1,8 @@
 """Barrier certificates under the names of ``rps`` 1: the wish is cut to the speed limit, not the solution.
 
 See :mod:`robots.rps.certificates` for the rows. Where ``rps`` finds no solution it goes on with what its solver has
-reached; here the rows are relaxed by the least amount that leaves one. What is wished is left as it was.
+reached; here the rows are relaxed by the least amount that leaves one. What is wished is left as it was. In 2018 the
+first argument was the number of robots: by its name, ``number_of_agents``, it is taken and has no effect.
 """
 
 from __future__ import annotations
@@ -23,7 +24,11 @@ CORNERS = np.array([[-1.0, -1.0, 1.0, 1.0], [-1.0, 1.0, 1.0, -1.0]])
 
 
 def create_single_integrator_barrier_certificate(
-    barrier_gain: float = 100.0, safety_radius: float = 0.17, magnitude_limit: float = 0.2
+    barrier_gain: float = 100.0,
+    safety_radius: float = 0.17,
+    magnitude_limit: float = 0.2,
+    *,
+    number_of_agents: int | None = None,
 ) -> Map:
     """Between robots.
 
@@ -31,6 +36,7 @@ def create_single_integrator_barrier_certificate(
         barrier_gain: gamma, 1/(m^4 s).
         safety_radius: D, metres between two robots.
         magnitude_limit: m/s, of the wish.
+        number_of_agents: of 2018, without effect.
 
     Returns:
         A function of wished velocities (2, N), m/s, and positions (2, N) that gives the nearest safe ones (2, N).
@@ -65,6 +71,8 @@ def create_unicycle_barrier_certificate(
     safety_radius: float = 0.12,
     projection_distance: float = 0.05,
     magnitude_limit: float = 0.2,
+    *,
+    number_of_agents: int | None = None,
 ) -> Map:
     """For the points ahead, their distance further apart. The limit of speed is 0.2 m/s whatever is asked, as there."""
     positive(magnitude_limit=magnitude_limit)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from robots.rps.columns import Real, along, columns, limited, not_negative, wrapped
-from robots.rps.version1.transformations import create_si_to_uni_dynamics
+from robots.rps.version1.transformations import create_si_to_uni_dynamics, single_integrator_to_unicycle2
 from robots.rps.version2 import controllers as version2
 from robots.rps.version2.controllers import Hybrid, lyapunov
 from robots.rps.version2.transformations import Map
@@ -89,3 +89,23 @@ def create_hybrid_unicycle_pose_controller(
         return command
 
     return pose_uni_hybrid_controller
+
+
+def single_integrator_position_controller(
+    x: Real, poses: Real, gain: float = 1.0, magnitude_limit: float = 0.08
+) -> Real:
+    """The position controller, at once, in 2018: (2, N) velocities of positions and goals (2, N), metres."""
+    return version2.create_si_position_controller(gain, gain, magnitude_limit)(x, poses)
+
+
+def unicycle_pose_controller(
+    x: Real, poses: Real, magnitude_limit: float = 0.08, position_error: float = 0.01, rotation_error: float = 0.25
+) -> Real:
+    """The hybrid controller, at once, in 2018: (2, N) commands of poses, goals (3, N); ``rotation_error`` is idle."""
+    states = columns("x", x, 3)
+    goals = columns("poses", poses, 3, states.shape[1])
+    wish = single_integrator_position_controller(states[:2], goals[:2], magnitude_limit=magnitude_limit)
+    there = np.linalg.norm(goals[:2] - states[:2], axis=0) <= position_error
+    command = np.where(there, 0.0, single_integrator_to_unicycle2(wish, states))
+    command[1, there] = wrapped(goals[2] - states[2])[there]
+    return command

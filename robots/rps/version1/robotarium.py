@@ -60,8 +60,9 @@ class Robotarium(Common):
     time_step = constants.TIME_STEP
     boundaries = (-1.6, -1.0, 3.2, 2.0)
     """x, y of the lower left corner, width and height, metres."""
+    boundary = boundaries
     robot_diameter = constants.ROBOT_DIAMETER
-    robot_radius = robot_diameter / 2.0
+    robot_radius = robot_size = robot_diameter / 2.0
     robot_length, robot_width = 0.095, 0.09
     wheel_radius = constants.WHEEL_RADIUS
     base_length = BASE_LENGTH

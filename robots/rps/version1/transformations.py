@@ -75,3 +75,24 @@ def create_uni_to_si_dynamics(projection_distance: float = 0.05) -> Map:
         A function of commands (2, N) and poses (3, N) that gives the point's velocities (2, N), m/s.
     """
     return version2.create_uni_to_si_mapping(projection_distance)[0]
+
+
+def single_integrator_to_unicycle2(
+    dxi: Real, poses: Real, linear_velocity_gain: float = 1.0, angular_velocity_limit: float = np.pi
+) -> Real:
+    """Steering, at once, in 2018: (2, N) commands of velocities (2, N), m/s, and poses (3, N).
+
+    There the turn is (pi / 2)^2 times that of later versions; the wheels' limits are what remains of it.
+    """
+    v, omega = create_si_to_uni_dynamics(linear_velocity_gain, angular_velocity_limit)(dxi, poses)
+    return np.array([v, (np.pi / 2.0) ** 2 * omega])
+
+
+def create_single_integrator_to_unicycle(projection_distance: float = 0.05) -> tuple[Map, Callable[[Real], Real]]:
+    """The name of :func:`create_si_to_uni_mapping` in 2018, without a limit of omega."""
+    return version2.create_si_to_uni_mapping(projection_distance)
+
+
+def unicycle_to_single_integrator(dxu: Real, poses: Real, projection_distance: float = 0.05) -> Real:
+    """The diffeomorphism to the point ahead, at once, in 2018: (2, N) of commands (2, N) and poses (3, N)."""
+    return create_uni_to_si_dynamics(projection_distance)(dxu, poses)
