@@ -94,9 +94,9 @@ class Simulation:
     def _compensated(self, twist: Real) -> Real:
         """(N, 2) what to command so that axles move as ``twist`` (N, 2) says.
 
-        Chipmunk moves a body along the tangent of its way for a whole substep. The centre of mass of a robot that turns,
-        r ahead of its axle, leaves its circle by r (omega dt)^2 / 2 each time and takes the axle along: forward, until
-        a controller that looks at its goal from there never comes to rest. So much less forward is commanded.
+        Chipmunk moves a body along the tangent of its way for a whole substep. The centre of mass of a robot that
+        turns, r ahead of its axle, leaves its circle by r (omega dt)^2 / 2 each time and takes the axle along: forward,
+        so that a controller that looks at its goal from there never comes to rest. So much less forward is commanded.
         """
         if not isinstance(self._world, Contact):
             return twist

@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from scenarios.cli import options
+from scenarios.cli.exits import MISSED
 from scenarios.errors import InputError
+
+if TYPE_CHECKING:
+    from scenarios.definition.experiment import Experiment
+
+RUNS, MOST_RUNS = 10, 1000
+"""Of a check, on each plant."""
 
 
 @click.command()
@@ -18,6 +26,10 @@ from scenarios.errors import InputError
 @options.changes
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Write to this file instead of printing.")
 @click.option("--force", is_flag=True, help="Replace the file of --out, with whatever was changed in it.")
+@click.option("--check", "checked", is_flag=True, help="Run it as the testbed would instead of printing it.")
+@click.option(
+    "--runs", type=click.IntRange(min=1, max=MOST_RUNS), help="With --check: runs on each plant.  [default: 10]"
+)
 def export(
     scenario: str,
     seed: int,
@@ -26,10 +38,14 @@ def export(
     changes: tuple[str, ...],
     out: Path | None,
     force: bool,
+    checked: bool,
+    runs: int | None,
 ) -> None:
     """Print a script that runs SCENARIO (a name or a file) on the Robotarium: numpy and rps, nothing else.
 
-    A safety filter becomes the Robotarium's certificate. What a script cannot carry is refused.
+    A safety filter becomes the Robotarium's certificate. What a script cannot carry is refused. With --check the script
+    is run, from the chargers on as on the testbed, on `saturated` and `pymunk` with several seeds; exit code 1 where a
+    run does not arrive.
     """
     from scenarios.definition.experiment import open_experiment
     from scenarios.export.portable import crowded, start_poses
@@ -45,9 +61,25 @@ def export(
         notes.append(remark)
     for remark in notes:
         click.echo(f"note: {remark}", err=True)
-    if out is None:
+    if out is not None:
+        if out.exists() and not force:
+            raise InputError(f"--out {out}: exists, and may hold changes of yours; --force replaces it")
+        write_whole(out, text.encode())
+    if checked:
+        _check(experiment, seed, RUNS if runs is None else runs)
+    elif runs is not None:
+        raise InputError("--runs: needs --check")
+    elif out is None:
         click.echo(text, nl=False)
-        return
-    if out.exists() and not force:
-        raise InputError(f"--out {out}: exists, and may hold changes of yours; --force replaces it")
-    write_whole(out, text.encode())
+
+
+def _check(experiment: Experiment, seed: int, runs: int) -> None:
+    from scenarios.studies import exported
+    from scenarios.terminal import new_console, progress_bar
+
+    console = new_console()
+    with progress_bar(console, f"check {experiment.file.name}") as advance:
+        found = exported.check(experiment, seed, range(runs), advance=advance)
+    exported.print_check(console, experiment, found)
+    if not all(each.arrives for each in found):
+        raise SystemExit(MISSED)

@@ -1,0 +1,128 @@
+"""What becomes of an exported script: run it as the testbed would, from its chargers on, and see whether it arrives.
+
+Each seed is one run: of the generators that chargers and detours are drawn from. A run that the public simulator makes
+with that seed goes the same way, but for what its numerics do (docs/robotarium.md).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+
+from robots.model import CONTROL_PERIOD
+from robots.rps.session import Session
+from robots.testbed import judge
+from scenarios.definition.experiment import Experiment
+from scenarios.export.script import script
+from scenarios.simulation.script.execute import execute
+from scenarios.simulation.script.script_file import read
+from scenarios.terminal import new_table, print_table
+
+PLANTS = ("saturated", "pymunk")
+
+
+@dataclass(frozen=True)
+class Arrival:
+    """What one run of an exported script gave.
+
+    Attributes:
+        plant, seed: of the run.
+        started: whether the robots came from their chargers to their start.
+        error_sum: of the angles at the end, radians; infinite where they did not start.
+        reached: whether that is below the scenario's goal.
+        accepted: the testbed's verdict on the script's own part.
+        kinds: of the violations.
+        seconds: that the script's part took.
+    """
+
+    plant: str
+    seed: int
+    started: bool
+    error_sum: float
+    reached: bool
+    accepted: bool
+    kinds: tuple[str, ...]
+    seconds: float
+
+    @property
+    def arrives(self) -> bool:
+        """Whether the testbed would run it to its goal."""
+        return self.started and self.reached and self.accepted
+
+
+def check(
+    experiment: Experiment,
+    seed: int,
+    seeds: Sequence[int],
+    plants: Sequence[str] = PLANTS,
+    advance: Callable[[int, int], None] = lambda done, total: None,
+) -> list[Arrival]:
+    """Run the script that ``export`` writes for the scenario's ``seed``, on each plant with each of ``seeds``.
+
+    Raises:
+        InputError: the testbed cannot run the scenario; the message names the field.
+    """
+    text = script(experiment, seed).replace("SHOW_FIGURE = True", "SHOW_FIGURE = False")
+    runs = [(plant, each) for plant in plants for each in seeds]
+    found = []
+    with tempfile.TemporaryDirectory(prefix="formation-export-") as folder:
+        path = Path(folder) / f"{experiment.file.name.replace('-', '_')}.py"
+        path.write_text(text, encoding="utf-8")
+        for done, (plant, each) in enumerate(runs, start=1):
+            found.append(arrival(experiment, path, plant, each))
+            advance(done, len(runs))
+    return found
+
+
+def arrival(experiment: Experiment, path: Path, plant: str, seed: int) -> Arrival:
+    """One run of an exported script."""
+    with contextlib.redirect_stdout(io.StringIO()):
+        ending = execute(read(path, 2), (), Session(plant, "driven"), seed)
+    if not ending.robots:
+        return Arrival(plant, seed, False, float("inf"), False, False, (), 0.0)
+    record = ending.robots[-1].record()
+    points = experiment.nid.project(record.poses[-1])
+    error = float(np.abs(experiment.angles.errors(points, experiment.target_angles)).sum())
+    verdict = judge(record.t, record.poses, record.wheel_speeds)
+    kinds = tuple(violation.kind for violation in verdict.violations)
+    seconds = CONTROL_PERIOD * (len(record.t) - 1)
+    return Arrival(plant, seed, True, error, error < experiment.goal, verdict.accepted, kinds, seconds)
+
+
+def print_check(console: Console, experiment: Experiment, found: Sequence[Arrival]) -> None:
+    """A row for each plant, and a line for each seed that does not arrive."""
+    table = new_table("plant", "runs", "come to the start", "reach the goal", "accepted", "error sum, median (rad)")
+    for plant in dict.fromkeys(each.plant for each in found):
+        runs = [each for each in found if each.plant == plant]
+        errors = [each.error_sum for each in runs if each.started]
+        table.add_row(
+            plant,
+            str(len(runs)),
+            str(sum(each.started for each in runs)),
+            str(sum(each.reached for each in runs)),
+            str(sum(each.accepted for each in runs)),
+            f"{np.median(errors):.1e}" if errors else "-",
+        )
+    print_table(console, table)
+    console.print()
+    for each in found:
+        if not each.arrives:
+            console.print(f"{each.plant}, seed {each.seed}: {why(each, experiment)}")
+    if all(each.arrives for each in found):
+        console.print("The testbed would run it to its goal, from every one of these starts.")
+
+
+def why(each: Arrival, experiment: Experiment) -> str:
+    """Why a run does not arrive."""
+    if not each.started:
+        return "the robots do not come to their start; it is too crowded there"
+    reasons = [] if each.reached else [f"the angle errors add up to {each.error_sum:.1e} rad, goal {experiment.goal:g}"]
+    hard = [kind for kind in each.kinds if kind != "actuator"]
+    return "; ".join([*reasons, *(["rejected: " + ", ".join(hard)] if hard else [])])
