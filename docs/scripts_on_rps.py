@@ -4,8 +4,8 @@
 
 RPS is the public simulator's source, of either generation, PYTHON an interpreter that has what it needs
 (numpy, matplotlib, scipy, cvxopt, quadprog). Nothing is fetched. Both sides begin at the initial conditions, with one
-seed. The public simulator runs twice: as it is, and with its solver run on to 1e-9 and robots moved on arcs, which tells
-what its numerics do. What has run is kept in FOLDER and not run again.
+seed. The public simulator runs twice: as it is, and with its solver run on to 1e-9 and robots moved on arcs, which
+tells what its numerics do. What has run is kept in FOLDER and not run again.
 """
 
 from __future__ import annotations

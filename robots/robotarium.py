@@ -18,7 +18,7 @@ from robots.rps.version2.barrier_certificates import (
 
 
 class Robotarium(version2.Robotarium):
-    """N robots on the testbed's floor, driven step by step.
+    """N robots on the testbed's floor, driven step by step, in the very worlds of the scenarios.
 
     Args:
         number_of_robots: 1 to 50; -1 takes as many as ``initial_conditions`` has columns.
@@ -32,6 +32,8 @@ class Robotarium(version2.Robotarium):
     Raises:
         ValueError: no such plant, no such number of robots, or poses that have another shape or are not finite.
     """
+
+    held = False
 
     def __init__(
         self,

@@ -54,6 +54,9 @@ class Robotarium(ABC):
     drives_in: bool
     """Whether the public simulator of this generation begins at the chargers."""
 
+    held = True
+    """Whether robots on ``pymunk`` hold a pose as there; see :class:`robots.rps.simulation.Simulation`."""
+
     def __init__(
         self,
         number_of_robots: int,
@@ -82,7 +85,7 @@ class Robotarium(ABC):
         self._twist = np.zeros((self.number_of_robots, 2))
         self._observed = False
         self._picture: Picture | None = None
-        self._simulation = Simulation(goals, self.robot, plant)
+        self._simulation = Simulation(goals, self.robot, plant, self.held)
         if driven:
             self._begin(goals, chargers)
         if show_figure and "matplotlib.pyplot" in sys.modules:

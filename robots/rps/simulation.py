@@ -49,14 +49,15 @@ class Simulation:
         poses: (N, 3) at which they stand.
         robot: what they are.
         plant: one of :data:`WHEELED`.
+        held: whether on ``pymunk`` axles go exactly where wheels carry them; see :meth:`_compensated`.
 
     Attributes:
         motion: (N, 2) v and omega of the last period as the axles moved, m/s and rad/s.
         turned: (N, 2) by how much the wheels turned in it, left and right, radians.
     """
 
-    def __init__(self, poses: Real, robot: RobotModel, plant: str) -> None:
-        self._robot, self._plant = robot, plant
+    def __init__(self, poses: Real, robot: RobotModel, plant: str, held: bool = True) -> None:
+        self._robot, self._plant, self._held = robot, plant, held
         self.place(poses)
 
     def place(self, poses: Real) -> None:
@@ -98,7 +99,7 @@ class Simulation:
         turns, r ahead of its axle, leaves its circle by r (omega dt)^2 / 2 each time and takes the axle along: forward,
         so that a controller that looks at its goal from there never comes to rest. So much less forward is commanded.
         """
-        if not isinstance(self._world, Contact):
+        if not (self._held and isinstance(self._world, Contact)):
             return twist
         drive = self._robot.drive
         limited = drive.twist(drive.saturate(drive.wheel_speeds(twist), "clip"))

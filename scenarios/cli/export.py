@@ -27,9 +27,7 @@ RUNS, MOST_RUNS = 10, 1000
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Write to this file instead of printing.")
 @click.option("--force", is_flag=True, help="Replace the file of --out, with whatever was changed in it.")
 @click.option("--check", "checked", is_flag=True, help="Run it as the testbed would instead of printing it.")
-@click.option(
-    "--runs", type=click.IntRange(min=1, max=MOST_RUNS), help="With --check: runs on each plant.  [default: 10]"
-)
+@click.option("--runs", type=click.IntRange(min=1, max=MOST_RUNS), help="With --check: on each plant.  [default: 10]")
 def export(
     scenario: str,
     seed: int,

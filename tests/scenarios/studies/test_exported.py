@@ -34,7 +34,7 @@ def test_a_script_that_misses_is_told_by_seed_and_exit_code(cli: Cli, tmp_path) 
     assert code == 1
     assert "saturated, seed 0: the angle errors add up to" in out
     assert (tmp_path / "three.py").exists()
-    assert cli("export", "three.toml", "--runs", "2")[2].strip() == "formation: --runs: needs --check"
+    assert cli("export", "three.toml", "--runs", "2")[2].endswith("formation: --runs: needs --check\n")
 
 
 def test_why_a_run_does_not_arrive_names_all_reasons(shape) -> None:  # type: ignore[no-untyped-def]
