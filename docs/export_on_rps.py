@@ -24,7 +24,7 @@ from scenarios.studies.exported import arrival
 
 PEER = Path(__file__).resolve().with_name("peer.py")
 SCENARIOS = ("shape", "maneuver", "maneuver-caption", "maneuver-testbed", "scale-only", "orientation-only", "fastest")
-LIMIT = 20_000
+LIMIT = 22_000
 """Steps, its drive to the start included."""
 
 

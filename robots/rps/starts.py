@@ -7,7 +7,7 @@ from contextlib import suppress
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from robots.rps.columns import Real, wrapped
 from robots.rps.simulation import Simulation
@@ -21,8 +21,8 @@ MOST_ROBOTS = 50
 POSITION_ERROR, ROTATION_ERROR = 0.05, 0.2
 """Metres and radians within which the testbed brings robots to their start (``rps`` 2.1)."""
 
-LONGEST_DRIVE = 6000
-"""Steps, 198 s, after which robots on their way to the start are stuck: ``rps`` has no such limit."""
+LONGEST_DRIVE = 18_000
+"""Steps, ten minutes, after which robots on their way to the start are stuck: ``rps`` has no such limit."""
 
 WAIT, STIR, NUDGE = 150, 0.1, 0.25
 """Steps for which a robot moves less than ``STIR``, metres, before it drives to a place within ``NUDGE`` first."""
@@ -84,8 +84,8 @@ def near(poses: Real, draws: np.random.Generator) -> Real:
 def drive_in(simulation: Simulation, goals: Real, boundaries: Real, stepped: Callable[[], None]) -> int:
     """Drive robots from where they stand to within the testbed's tolerance of goals (N, 3); the steps it took.
 
-    As ``rps`` 2.1 does: the hybrid controller and the unicycle certificate with their defaults, and for who is held up
-    a place nearby to drive to first.
+    As ``rps`` 2.1 does: the hybrid controller and the unicycle certificate, and for who is held up on the way a place
+    nearby to drive to first. (There, a mask taken for numbers keeps robots 0 and 1 from that.)
 
     Args:
         simulation: what drives.
@@ -106,21 +106,21 @@ def drive_in(simulation: Simulation, goals: Real, boundaries: Real, stepped: Cal
     since, held_at = np.zeros(n, dtype=np.intp), simulation.poses.T.copy()
     with suppress(ValueError):  # places that rps draws here and does not use: what follows is drawn alike
         generate_random_poses(n, spacing=0.4, width=2.75, height=1.75)
-    who = np.zeros(n, dtype=bool)
+    x = _columns(simulation)
     simulation.step(np.zeros((n, 2)))
     stepped()
     for step in range(LONGEST_DRIVE):
-        x = simulation.poses.T.copy()
-        x[2] = wrapped(x[2])
         done, who = arrived(x, target)
         if done:
             return step
+        x = _columns(simulation)
+        _, who = arrived(x, target)
         # In rps the controller's memory is lost at every step.
         wish, _ = controller(x, target, np.ones(n))
         quiet = np.linalg.norm(wish, axis=0) <= QUIET
         around, _ = controller(x, np.where(np.isnan(detour), target, detour), np.ones(n))
         moved = np.linalg.norm(x[:2] - held_at[:2], axis=0)
-        for robot in _looked_after(who):
+        for robot in np.flatnonzero(~who):
             waits = step - since[robot] > WAIT
             if not np.isnan(detour[0, robot]):
                 wish[:, robot] = around[:, robot]
@@ -138,12 +138,10 @@ def drive_in(simulation: Simulation, goals: Real, boundaries: Real, stepped: Cal
     raise StuckError(f"robots {missing} have not come to their start in {LONGEST_DRIVE} steps: it is too crowded there")
 
 
-def _looked_after(arrived: NDArray[np.bool_]) -> list[int]:
-    """Whom ``rps`` asks whether they are held up.
-
-    It means those that have not arrived, and takes what says who has, True or False, for their numbers 1 and 0.
-    """
-    return [robot for robot in range(len(arrived)) if not (arrived == robot).any()]
+def _columns(simulation: Simulation) -> Real:
+    """(3, N) poses, headings wrapped."""
+    x, y, theta = simulation.poses.T
+    return np.stack([x, y, wrapped(theta)])
 
 
 def _nearby(place: Real, boundaries: Real) -> Real:
