@@ -67,18 +67,22 @@ def script_result(
 
 
 def describe(violation: dict[str, Any]) -> str:
-    """One kind of violation, in a line."""
-    first = violation["first"]
-    who = " and ".join(str(robot) for robot in first["robots"])
-    x, y = first["place_m"]
-    where = f"first at {first['time_s']:.2f} s, ({x:.4g}, {y:.4g}) m, {violation['steps']} steps"
+    """One kind of violation, in a line: the worst of it, and when it began."""
+    first, worst = violation["first"], violation["worst"]
+    who, began = (" and ".join(str(robot) for robot in each["robots"]) for each in (worst, first))
+    x, y = worst["place_m"]
+    by = "" if who == began else f" by {began}"
+    where = (
+        f"worst at {worst['time_s']:.2f} s, ({x:.4g}, {y:.4g}) m, first at {first['time_s']:.2f} s{by}, "
+        f"{violation['steps']} steps"
+    )
     match violation["kind"]:
         case "floor":
-            return f"robot {who} leaves the floor; {where}"
+            return f"robot {who} leaves the floor by {worst['value']:.3f} m; {where}"
         case "collision":
-            return f"robots {who} come within {first['value']:.3f} m; {where}"
+            return f"robots {who} come within {worst['value']:.3f} m; {where}"
         case _:
-            return f"robot {who} commands a wheel to {first['value']:.4g} rad/s (warning); {where}"
+            return f"robot {who} commands a wheel to {worst['value']:.6g} rad/s (warning); {where}"
 
 
 def _closest(record: Record) -> dict[str, Any]:

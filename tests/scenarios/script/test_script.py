@@ -200,12 +200,19 @@ def test_a_script_that_asks_for_initialisation_is_told_once_that_it_gets_none(ru
 
 
 def test_replay_plot_and_animate_work_on_the_folder(cli: Cli, tmp_path: Path) -> None:
-    (tmp_path / "mine.py").write_text(HEAD + "r._axes_handle.text(0, 0, 'hi')\ngo(40)\n")
-    assert cli("script", "mine.py", "--plant", "saturated", "--out", "run")[0] == 0
-    first = (tmp_path / "run" / "recording.rrd").read_bytes()
+    from rerun.chunk import RrdReader
+
     from scenarios.recording.content import recording_of
 
-    assert len(recording_of(tmp_path / "run")) == pytest.approx(len(first), rel=0.01)
+    (tmp_path / "mine.py").write_text(HEAD + "r._axes_handle.text(0, 0, 'hi')\ngo(40)\n")
+    assert cli("script", "mine.py", "--plant", "saturated", "--out", "run")[0] == 0
+    chunks = RrdReader(str(tmp_path / "run" / "recording.rrd")).stream()
+    entities = {str(chunk.entity_path) for chunk in chunks}
+    for entity in ("/arena/world/robots/0", "/arena/world/robots/1", "/figure", "/summary", "/separation/value"):
+        assert entity in entities
+    assert "/arena/world/robots/2" not in entities
+    written = (tmp_path / "run" / "recording.rrd").stat().st_size
+    assert len(recording_of(tmp_path / "run")) == pytest.approx(written, rel=0.01)
     code, out, _ = cli("plot", "run", "--format", "svg")
     assert (code, out.strip()) == (0, "run/figure-motion.svg")
     code, out, _ = cli("animate", "run", "--fps", "5")
@@ -213,16 +220,13 @@ def test_replay_plot_and_animate_work_on_the_folder(cli: Cli, tmp_path: Path) ->
     assert (tmp_path / "run" / "animation.gif").read_bytes().startswith(b"GIF89a")
 
 
-def test_the_recording_has_robots_from_0_and_the_scripts_figure(cli: Cli, tmp_path: Path) -> None:
-    from rerun.chunk import RrdReader
-
-    (tmp_path / "mine.py").write_text(HEAD + "r._axes_handle.text(0, 0, 'hi')\ngo(40)\n")
-    cli("script", "mine.py", "--plant", "saturated", "--out", "run")
-    chunks = RrdReader(str(tmp_path / "run" / "recording.rrd")).stream()
-    entities = {str(chunk.entity_path) for chunk in chunks}
-    for entity in ("/arena/world/robots/0", "/arena/world/robots/1", "/figure", "/summary", "/separation/value"):
-        assert entity in entities
-    assert "/arena/world/robots/2" not in entities
+def test_the_verdict_tells_the_first_and_the_worst_of_each_violation(run: Callable) -> None:
+    code, out, _, result = run("go(60, 0.15)\ngo(60, 0.2)\n" + "go(140, 0.2)\n")
+    assert code == 1
+    assert not result["testbed"]["accepted"]
+    (violation,) = (each for each in result["testbed"]["violations"] if each["kind"] == "floor")
+    assert violation["first"]["value"] < 0.01 < 0.1 < violation["worst"]["value"]
+    assert f"leaves the floor by {violation['worst']['value']:.3f} m; worst at 8.58 s" in out
 
 
 def test_the_keyboard_interrupts_a_script_and_the_folder_is_kept(
