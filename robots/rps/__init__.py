@@ -23,4 +23,5 @@ __all__ = [
     "starts",
     "version1",
     "version2",
+    "words",
 ]

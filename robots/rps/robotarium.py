@@ -27,7 +27,8 @@ from robots.rps.picture import Look, Picture
 from robots.rps.session import current
 from robots.rps.simulation import WHEELED, Record, Simulation
 from robots.rps.version2.misc import generate_initial_poses
-from robots.testbed import COLLISION_DISTANCE, Verdict, Violation, judge
+from robots.rps.words import sentence
+from robots.testbed import Verdict, judge
 
 SEES_NOTHING = -1.0
 
@@ -204,7 +205,7 @@ class Robotarium(ABC):
         else:
             print("Errors: the Robotarium would reject this script.")
         for violation in verdict.violations:
-            print(f"  {_sentence(violation)}")
+            print(f"  {sentence(violation)}")
         return verdict
 
     def call_at_scripts_end(self) -> Verdict:
@@ -283,21 +284,3 @@ def ignored(names: list[str], known: list[str]) -> None:
     """Warn of arguments that mean nothing here, as they mean nothing in ``rps``, which does not say so."""
     for name in names:
         warnings.warn(f"Robotarium: no argument {name!r}, ignored; known: {', '.join(known)}", stacklevel=3)
-
-
-def _sentence(violation: Violation) -> str:
-    first, worst = violation.first, violation.worst
-    who = " and ".join(str(robot) for robot in worst.robots)
-    what = {
-        "floor": f"robot {who} leaves the floor by {worst.value:.3f} m",
-        "collision": f"robots {who} come within {COLLISION_DISTANCE} m: {worst.value:.3f} m",
-        "obstacle": f"robot {who} comes within {worst.value:.3f} m of an obstacle",
-        "actuator": f"robot {who} is commanded {worst.value:.10g} rad/s at a wheel, which is clipped",
-    }[violation.kind]
-    severity = "WARNING" if violation.kind == "actuator" else "ERROR"
-    x, y = worst.place
-    other = "" if first.robots == worst.robots else f" by robot {' and '.join(map(str, first.robots))}"
-    return (
-        f"{severity}: {what}; worst at {worst.time:.2f} s near ({x:.2f}, {y:.2f}) m, "
-        f"first at {first.time:.2f} s{other}, {violation.steps} steps"
-    )
