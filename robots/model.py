@@ -81,6 +81,9 @@ CONTROL_PERIOD = 0.033
 COLLISION_CENTRE = 0.025
 """Metres from the axle's centre ahead to the point that the Robotarium checks for collisions (``rps`` 2.1)."""
 
+ENCODER_COUNTS_PER_TURN = 28 * 100
+"""Encoder counts per turn of a wheel: 28 of the motor's shaft, gears of 1:100 (``rps`` 2.1; the robots' firmware)."""
+
 GTERNAL = RobotModel(
     drive=DifferentialDrive(
         wheel_radius=0.016,  # m, rps 2.1

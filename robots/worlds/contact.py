@@ -77,10 +77,17 @@ class Contact:
         self._untouched = np.full(n, NOTHING)
         self._observe()
 
+    @property
+    def seen(self) -> tuple[Real, Real]:
+        return self.points, self.headings
+
     def step(self, controller: Controller, period: float) -> None:
         wheels = controller(self.points, self.headings) @ self._to_wheels
         self.wheel_speeds = self._drive.saturate(wheels, self._saturation)
-        twist = self.wheel_speeds @ self._to_twist
+        self.move(self.wheel_speeds @ self._to_twist, period)
+
+    def move(self, twist: Real, period: float) -> None:
+        """Advance by a period, seconds, while the wheels command twists (n, 2) of the axles, m/s and rad/s."""
         drive = self._command[self._n : -1]
         dt = period / self._substeps
         # The partner moves along the chord of the arc that the wheels command over a whole period. The solver moves

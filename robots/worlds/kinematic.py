@@ -28,6 +28,10 @@ class SingleIntegrator:
         self.wheel_speeds = np.full_like(self.points, np.nan)
         self.contacts = np.full(self.points.shape[:-1], NOTHING)
 
+    @property
+    def seen(self) -> tuple[Real, Real]:
+        return self.points, self.headings
+
     def step(self, controller: Controller, period: float) -> None:
         h, p, frame = period, self.points, self.headings.view(np.complex128)
 
@@ -58,9 +62,16 @@ class Unicycle:
         self.contacts = np.full(self.poses.shape[:-1], NOTHING)
         self._observe()
 
+    @property
+    def seen(self) -> tuple[Real, Real]:
+        return self.points, self.headings
+
     def step(self, controller: Controller, period: float) -> None:
         self.wheel_speeds = self._limited(controller(self.points, self.headings) @ self._to_wheels)
-        twist = self.wheel_speeds @ self._to_twist
+        self.move(self.wheel_speeds @ self._to_twist, period)
+
+    def move(self, twist: Real, period: float) -> None:
+        """Advance by a period, seconds, at twists (..., n, 2) of the axles, m/s and rad/s."""
         turn = twist[..., 1] * period
         chord = arc_chord(twist[..., 0] * period, self.poses[..., 2], turn)
         self.poses[..., :2] += chord[..., None].view(np.float64)

@@ -40,6 +40,11 @@ class World(Protocol):
     wheel_speeds: Real
     contacts: Index
 
+    @property
+    def seen(self) -> tuple[Real, Real]:
+        """Projected points and headings as the controller is given them: the true ones, unless cameras are between."""
+        ...
+
     def step(self, controller: Controller, period: float) -> None:
         """Advance the state by one control period, seconds."""
         ...

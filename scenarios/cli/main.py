@@ -11,7 +11,7 @@ from contextlib import contextmanager
 
 import click
 
-from scenarios.cli import draw, export, look, many, run, script, study
+from scenarios.cli import draw, export, look, many, run, script, study, testbed
 from scenarios.cli.exits import BAD_INPUT, INTERRUPTED, MISSED
 from scenarios.errors import InputError, did_you_mean, plain
 
@@ -23,6 +23,7 @@ FAMILIES: tuple[tuple[click.Command, ...], ...] = (
     (study.laws, study.audit, study.reproduce),
     (export.export,),
     (script.script,),
+    (testbed.identify,),
 )
 """All commands, a family a file."""
 

@@ -24,6 +24,11 @@ LATER_KEYS = (
     ("sensor", "ratio_noise"),
     ("sensor", "edge_loss"),
     ("sensor", "dropout"),
+    ("robot", "model"),
+    ("robot", "file"),
+    ("robot", "numbers"),
+    ("robot", "base_spread"),
+    ("robot", "radius_spread"),
 )
 """Keys that came after the first baselines: at their defaults they are not in a scenario's digest."""
 

@@ -27,8 +27,10 @@ from formation import (
 from formation.laws.base import ORIENTATION, SCALE
 from formation.measurements import ANGLE, RATIO
 from robots import GTERNAL, Arena, Imperfections, Instruments, NearIdentityDiffeomorphism, RobotModel
+from robots.measured import MeasuredModel
 from robots.obstacles import Obstacle
 from robots.safety import FilterSettings
+from scenarios.definition import robot_file
 from scenarios.definition.bounds import LONGEST_RUN, check_size
 from scenarios.definition.formations import Aim, build_aim, with_graph
 from scenarios.definition.load import ScenarioFile, load
@@ -59,6 +61,7 @@ class Experiment:
         phases: the maneuver, a single phase for shape control.
         law: the formation law.
         estimator: how agents learn v_r; None where it is broadcast.
+        measured: the robots as logs and firmware show them; None for the data sheet's.
         asked_duration: seconds that replaced the scenario's own; None where none did.
     """
 
@@ -73,6 +76,7 @@ class Experiment:
     robot: RobotModel
     arena: Arena
     filter_settings: FilterSettings
+    measured: MeasuredModel | None
     asked_duration: float | None = None
 
     @property
@@ -218,6 +222,7 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
         robot=robot,
         arena=arena,
         filter_settings=_filter_settings(path, scenario),
+        measured=robot_file.measured(scenario, path),
         asked_duration=duration,
     )
 

@@ -95,6 +95,10 @@ def load(scenario: str, changes: Sequence[str] = ()) -> ScenarioFile:
     except (ValueError, RecursionError) as error:  # besides TOMLDecodeError: numbers too long, nesting too deep
         raise InputError(f"{scenario}: not valid TOML: {error}") from error
     validated = validate(with_changes(data, changes), scenario)
+    if validated.robot.file is not None:
+        from scenarios.definition import robot_file  # robots bring numpy, which few commands that load need
+
+        validated = robot_file.put_in(validated, scenario, path.parent)
     law = None if validated.law.file is None else law_file.read(scenario, path.parent, validated.law.file)
     return ScenarioFile(path.stem, scenario, head_comment(text), validated, law)
 

@@ -140,6 +140,18 @@ class RobotTable(Table):
     """Coefficient between tyres and floor: the force of all tyres is at most this times the weight."""
     body_friction: NotNegative = 0.0
     """Coefficient between two chassis, and a chassis and a wall."""
+    model: Literal["nominal", "measured"] = "nominal"
+    """The data sheet's robot, or the one that logs and firmware show, on the plants `saturated` and `pymunk`;
+    docs/testbed.md says what it has."""
+    file: str | None = None
+    """Robot file that `formation identify` wrote, for the measured robot; its path starts where the scenario file is,
+    or where the command runs."""
+    numbers: dict[str, Number] | None = None
+    """The content of that file, in its place: what a run folder keeps."""
+    base_spread: Annotated[float, Field(strict=True, ge=0.0, le=0.2)] = 0.01
+    """Relative deviation of the measured robots' base lengths from one to the next; assumed."""
+    radius_spread: Annotated[float, Field(strict=True, ge=0.0, le=0.2)] = 0.005
+    """Relative deviation of their wheel radii; assumed."""
 
 
 class ArenaTable(Table):

@@ -49,6 +49,8 @@ def simulate(
         robot=experiment.robot,
         saturation=experiment.scenario.robot.saturation,
         arena=experiment.arena,
+        measured=experiment.measured,
+        generators=generators,
     )
     controller = Controller(experiment, generators, batch)
     schedule = [(phase, *periods(phase, experiment.scenario.plant.control_period_s)) for phase in experiment.phases]
@@ -80,7 +82,7 @@ def simulate(
     for index, (phase, count, period) in enumerate(schedule):
         controller.begin_phase(phase)
         for step in range(1, count + 1):
-            controller.begin_period(world.points, world.headings, period)
+            controller.begin_period(*world.seen, period)
             world.step(controller, period)
             done += 1
             t[done] = start + phase.duration * (step / count)
