@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from robots.identification.log import Log
 from robots.identification.numbers import TURN, RobotNumbers
 from robots.identification.odometry import RADIANS_PER_COUNT
 
@@ -50,6 +51,20 @@ def random_way(rng: np.random.Generator, turns: int) -> Way:
     for _ in range(2):
         forward, turn = (lfilter([share], [1.0, share - 1.0], command) for command in (forward, turn))
     return Way(forward * TURN / FINE, turn * TURN / FINE)
+
+
+def way_of(log: Log, numbers: RobotNumbers) -> Way:
+    """The way that the wheels of a log went, for a robot of those numbers to go it again."""
+    from scipy.interpolate import PchipInterpolator
+
+    at = np.flatnonzero(log.heard)
+    steps = np.arange(-_MARGIN * FINE, (log.turns + _MARGIN) * FINE + 1) / FINE
+    read = np.clip(steps + numbers.lag, at[0], at[-1])
+    left, right = (
+        numbers.wheel_radius * RADIANS_PER_COUNT * np.diff(PchipInterpolator(at, log.counts[at, side])(read))
+        for side in (0, 1)
+    )
+    return Way((left + right) / 2.0, (right - left) / numbers.base_length)
 
 
 def synthesise(way: Way, truth: RobotNumbers, rng: np.random.Generator) -> tuple[Real, Real]:

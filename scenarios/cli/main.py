@@ -23,7 +23,7 @@ FAMILIES: tuple[tuple[click.Command, ...], ...] = (
     (study.laws, study.audit, study.reproduce),
     (export.export,),
     (script.script,),
-    (testbed.identify,),
+    (testbed.identify, testbed.ladder_command),
 )
 """All commands, a family a file."""
 

@@ -41,3 +41,40 @@ def identify(log: Path, robot: int, out: Path | None, markdown: Path | None) -> 
     if markdown is not None:
         write_text(markdown, "\n".join(identification.markdown(found)) + "\n", "--markdown")
     console.print(f"robot file: {folder / 'robot.toml'}", markup=False)
+
+
+@click.command("ladder")
+@options.scenario
+@click.option("--seeds", default="0:20", show_default=True, metavar="A:B", help="Seeds A to B - 1 on every rung.")
+@options.changes
+@options.workers
+@click.option("--out", type=click.Path(path_type=Path), help="Folder.  [default: runs/ladder-SCENARIO]")
+@options.markdown("Write the table to this file too.")
+def ladder_command(
+    scenario: str, seeds: str, changes: tuple[str, ...], workers: int | None, out: Path | None, markdown: Path | None
+) -> None:
+    """Run SCENARIO on five rungs, from the theory to measured robots: what each adds to the error.
+
+    The last rung is pymunk with robot.model = "measured". Writes rows.csv and a figure.
+    """
+    from scenarios.definition.experiment import open_experiment
+    from scenarios.figures.ladder import ladder as draw
+    from scenarios.figures.style import print_style, render
+    from scenarios.storage.files import write_text, write_whole
+    from scenarios.studies import ladder
+    from scenarios.studies.project import PROJECT
+    from scenarios.studies.sweep.seeds import parse_seeds
+    from scenarios.terminal import new_console, progress_bar
+    from scenarios.work.spread import spread
+
+    console, goal = new_console(), open_experiment(scenario, changes).goal
+    with spread(workers, None, PROJECT) as run_all, progress_bar(console, "ladder") as advance:
+        climbed = ladder.climb(scenario, changes, tuple(parse_seeds(seeds)), run_all, advance)
+    ladder.print_ladder(console, climbed)
+    folder = out or Path("runs") / f"ladder-{climbed.scenario}"
+    ladder.write_rows(climbed, folder)
+    with print_style():
+        write_whole(folder / "figure-ladder.png", render(draw(climbed.times, climbed.errors, goal), "png"))
+    if markdown is not None:
+        write_text(markdown, "\n".join(ladder.markdown(climbed)) + "\n", "--markdown")
+    console.print(f"rows: {folder / ladder.ROWS}", markup=False)

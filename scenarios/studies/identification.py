@@ -2,26 +2,31 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 from rich.console import Console
 from rich.markup import escape
 
 from robots.identification.check import checked
 from robots.identification.estimate import Identified, identify
 from robots.identification.log import Log, LogError
-from robots.identification.numbers import MEANINGS, UNITS, Interval
+from robots.identification.numbers import MEANINGS, NAMES, UNITS, Interval, RobotNumbers
 from robots.identification.odometry import RADIANS_PER_COUNT
 from robots.identification.reading import read_arrays
 from robots.identification.reckoning import WINDOW, Reckoning, dead_reckoning
+from robots.identification.synthetic import synthesise, way_of
 from robots.model import GTERNAL
 from scenarios.definition import robot_file
 from scenarios.documents import markdown_table
 from scenarios.errors import InputError
 from scenarios.terminal import new_table, print_table
 
-NOMINAL = "data sheet, whole lag, last counts"
-IDENTIFIED = "identified, lost counts spread"
+DATA_SHEET = RobotNumbers(
+    **dict.fromkeys(NAMES, 0.0) | {"wheel_radius": GTERNAL.drive.wheel_radius, "base_length": GTERNAL.drive.base_length}
+)
+"""The robot of the public simulators: its data sheet's wheels, and nothing that a log knows."""
 
 
 def open_log(path: Path, robot: int = 1) -> Log:
@@ -49,18 +54,34 @@ def identified(path: Path, robot: int = 1) -> Identified:
         raise InputError(f"{path}: {error}") from error
 
 
-def reckonings(found: Identified) -> dict[str, Reckoning]:
-    """Dead reckoning over :data:`robots.identification.reckoning.WINDOW` turns, by the data sheet and as identified."""
-    drive, numbers = GTERNAL.drive, found.numbers
+def reckonings(found: Identified) -> list[tuple[str, Reckoning, Reckoning]]:
+    """Dead reckoning over :data:`robots.identification.reckoning.WINDOW` turns: whose, by data sheet, as identified.
+
+    Beside the log stand two simulated robots that go its wheels' way: one of the identified numbers with all its
+    noises, and the data sheet's, whose poses and counts are exact but for rounding.
+    """
+    numbers = found.numbers
+    simulated = []
+    for robot in (numbers, DATA_SHEET):
+        rng = np.random.default_rng(0)
+        simulated.append(checked(*synthesise(way_of(found.log, robot), robot, rng)))
+    names, lags = ("the log", "simulated, measured", "simulated, data sheet"), (numbers.lag, numbers.lag, 0.0)
+    return [
+        (name, by_data_sheet(log, lag), by_numbers(log, replace(numbers, lag=lag)))
+        for name, log, lag in zip(names, (found.log, *simulated), lags, strict=True)
+    ]
+
+
+def by_data_sheet(log: Log, lag: float) -> Reckoning:
+    """Errors by the data sheet, the last counts standing where a message was lost."""
+    drive = GTERNAL.drive
+    return dead_reckoning(log, drive.wheel_radius, drive.base_length, float(round(lag)), spread=False)
+
+
+def by_numbers(log: Log, numbers: RobotNumbers) -> Reckoning:
+    """Errors by identified numbers, lost counts spread."""
     offset = complex(numbers.offset_ahead, numbers.offset_left)
-    return {
-        NOMINAL: dead_reckoning(
-            found.log, drive.wheel_radius, drive.base_length, float(round(numbers.lag)), spread=False
-        ),
-        IDENTIFIED: dead_reckoning(
-            found.log, numbers.wheel_radius, numbers.base_length, numbers.lag, offset, numbers.marker_angle
-        ),
-    }
+    return dead_reckoning(log, numbers.wheel_radius, numbers.base_length, numbers.lag, offset, numbers.marker_angle)
 
 
 def rows(found: Identified) -> list[tuple[str, str, str, str, str]]:
@@ -90,15 +111,16 @@ def print_identified(console: Console, found: Identified) -> None:
     console.print(f"quantisation: {quantisation(found)}")
     for repair in found.log.repairs:
         console.print(f"repaired: {escape(repair)}")
-    table = new_table("quantity", "position (mm)", "heading (rad)", title=f"dead reckoning over {WINDOW} turns, rms")
-    for name, errors in reckonings(found).items():
-        table.add_row(name, f"{1e3 * errors.position:.1f}", f"{errors.heading:.4f}")
+    title = f"dead reckoning over {WINDOW} turns, rms of position and heading"
+    table = new_table("quantity", "by the data sheet", "as identified", title=title)
+    for name, nominal, true in reckonings(found):
+        table.add_row(name, _errors(nominal), _errors(true))
     print_table(console, table)
 
 
 def markdown(found: Identified) -> list[str]:
     """The same tables, for a page."""
-    reckoned = [[name, f"{1e3 * e.position:.1f} mm", f"{e.heading:.4f} rad"] for name, e in reckonings(found).items()]
+    reckoned = [[name, _errors(nominal), _errors(true)] for name, nominal, true in reckonings(found)]
     return [
         *markdown_table(("quantity", "value", "95 % interval", "unit", "meaning"), rows(found)),
         "",
@@ -106,7 +128,7 @@ def markdown(found: Identified) -> list[str]:
         "",
         f"Dead reckoning over {WINDOW} turns, a window at every turn, root mean square:",
         "",
-        *markdown_table(("numbers", "position", "heading"), reckoned, numbers=2),
+        *markdown_table(("whose poses and counts", "by the data sheet", "as identified"), reckoned, numbers=2),
     ]
 
 
@@ -115,6 +137,10 @@ def robot_file_text(found: Identified, source: str) -> str:
     return robot_file.text(
         found.intervals, f"A robot as `formation identify {source}` found it, {found.log.turns} turns."
     )
+
+
+def _errors(reckoning: Reckoning) -> str:
+    return f"{1e3 * reckoning.position:.1f} mm, {reckoning.heading:.4f} rad"
 
 
 def _figures(interval: Interval) -> tuple[str, str]:

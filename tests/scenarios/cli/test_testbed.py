@@ -14,6 +14,8 @@ from scenarios.definition.experiment import open_experiment
 from scenarios.definition.load import load
 from scenarios.errors import InputError
 from scenarios.simulation.loop import simulate
+from scenarios.studies import identification
+from scenarios.studies.ladder import RUNGS
 
 Cli = Callable[..., tuple[int, str, str]]
 
@@ -91,3 +93,33 @@ def test_a_measured_run_ends_near_its_shape_and_differs_from_the_nominal_one() -
     nominal = simulate(open_experiment("shape", ("plant.name=saturated",)), 0)
     assert np.array_equal(measured.poses[0], nominal.poses[0])  # the start is drawn before any robot is
     assert 1e-4 < np.abs(measured.points[-1] - nominal.points[-1]).max() < 0.1
+
+
+def test_a_simulated_robot_of_the_identified_numbers_reckons_as_the_log_does_and_the_data_sheets_does_not(
+    log: Path,
+) -> None:
+    real, measured, nominal = identification.reckonings(identification.identified(log))
+    for column in (1, 2):
+        assert measured[column].position == pytest.approx(real[column].position, rel=0.25)
+        assert measured[column].heading == pytest.approx(real[column].heading, rel=0.25)
+    assert nominal[1].heading < 0.1 * real[1].heading
+
+
+def test_a_ladder_has_five_rungs_and_only_the_last_has_a_floor(cli: Cli) -> None:
+    arguments = ("--seeds", "0:2", "--workers", "1", "--set", "duration_s=30.0", "--markdown", "ladder.md")
+    code, out, _ = cli("ladder", "shape", *arguments)
+    assert code == 0
+    floors = {m[1]: float(m[2]) for m in re.finditer(r"^(\w+) .* ([\d.]+e[-+]\d+) ", out, re.MULTILINE)}
+    assert list(floors) == [rung for rung, _, _ in RUNGS]
+    assert floors["measured"] > 1e-3 > 10.0 * max(floor for rung, floor in floors.items() if rung != "measured")
+    folder = Path("runs/ladder-shape")
+    rows = (folder / "rows.csv").read_text(encoding="utf-8").splitlines()
+    assert len(rows) == 1 + 2 * len(RUNGS)
+    assert (folder / "figure-ladder.png").stat().st_size > 10_000
+    assert "| measured |" in Path("ladder.md").read_text(encoding="utf-8")
+
+
+def test_a_rung_that_cannot_be_climbed_is_told_before_anything_runs(cli: Cli) -> None:
+    code, _, err = cli("ladder", "shape", "--set", "sensor.delay_periods=2")
+    assert code == 2
+    assert "single_integrator" in err
