@@ -138,9 +138,9 @@ class Experiment:
 
     @property
     def noisy(self) -> bool:
-        """Whether measurements are drawn anew each period, so that a run is judged over a while and not by its end."""
+        """Whether measurements or motion are drawn anew each period: a run is judged over a while, not by its end."""
         sensor = self.scenario.sensor
-        return sensor.position_noise_m > 0.0 or sensor.bearing_noise_deg > 0.0
+        return sensor.position_noise_m > 0.0 or sensor.bearing_noise_deg > 0.0 or self.measured is not None
 
     @cached_property
     def first_follower(self) -> str:
