@@ -30,7 +30,7 @@ PACKAGES = [name for name, path in MODULES.items() if path.name == "__init__.py"
 
 ALLOWED = {
     "formation": {"formation", "numpy", "scipy", "numba"},
-    "robots": {"robots", "numpy", "pymunk", "numba", "daqp", "matplotlib"},  # the last for what scripts draw
+    "robots": {"robots", "numpy", "scipy", "pymunk", "numba", "daqp", "matplotlib"},  # the last for what scripts draw
 }
 
 HEAVY_HOMES = {

@@ -25,7 +25,7 @@ def identify(log: Path, robot: int, out: Path | None, markdown: Path | None) -> 
     It needs x, y, theta and both encoders' counts of every turn of the loop. Writes robot.toml, which scenarios name by
     robot.file, and a figure of what the numbers leave unexplained.
     """
-    from scenarios.figures.residuals import residuals
+    from scenarios.figures.studies.residuals import residuals
     from scenarios.figures.style import print_style, render
     from scenarios.storage.files import write_text, write_whole
     from scenarios.studies import identification
@@ -58,7 +58,7 @@ def ladder_command(
     The last rung is pymunk with robot.model = "measured". Writes rows.csv and a figure.
     """
     from scenarios.definition.experiment import open_experiment
-    from scenarios.figures.ladder import ladder as draw
+    from scenarios.figures.studies.ladder import ladder as draw
     from scenarios.figures.style import print_style, render
     from scenarios.storage.files import write_text, write_whole
     from scenarios.studies import ladder

@@ -10,7 +10,7 @@ from typing import Any, cast
 
 from pydantic import BaseModel
 
-from scenarios.definition.law_file import LawFile
+from scenarios.definition.files.law_file import LawFile
 from scenarios.definition.schema import Scenario
 
 OWN_LAW_KEYS = ("file", "factory", "parameters")

@@ -30,8 +30,8 @@ from robots import GTERNAL, Arena, Imperfections, Instruments, NearIdentityDiffe
 from robots.measured import MeasuredModel
 from robots.obstacles import Obstacle
 from robots.safety import FilterSettings
-from scenarios.definition import robot_file
 from scenarios.definition.bounds import LONGEST_RUN, check_size
+from scenarios.definition.files import robot_file
 from scenarios.definition.formations import Aim, build_aim, with_graph
 from scenarios.definition.load import ScenarioFile, load
 from scenarios.definition.own_law import NotLoaded, OwnFactory, check_parameters

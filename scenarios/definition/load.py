@@ -10,11 +10,11 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from scenarios.definition import law_file
 from scenarios.definition.bounds import LARGEST_INTEGER
 from scenarios.definition.digest import digest
-from scenarios.definition.law_file import LawFile
-from scenarios.definition.reading import read_regular
+from scenarios.definition.files import law_file
+from scenarios.definition.files.law_file import LawFile
+from scenarios.definition.files.reading import read_regular
 from scenarios.definition.schema import LawTable, Scenario
 from scenarios.errors import InputError, did_you_mean, plain
 
@@ -96,7 +96,7 @@ def load(scenario: str, changes: Sequence[str] = ()) -> ScenarioFile:
         raise InputError(f"{scenario}: not valid TOML: {error}") from error
     validated = validate(with_changes(data, changes), scenario)
     if validated.robot.file is not None:
-        from scenarios.definition import robot_file  # robots bring numpy, which few commands that load need
+        from scenarios.definition.files import robot_file  # robots bring numpy, which few commands that load need
 
         validated = robot_file.put_in(validated, scenario, path.parent)
     law = None if validated.law.file is None else law_file.read(scenario, path.parent, validated.law.file)

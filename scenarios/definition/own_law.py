@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from formation import FormationLaw, Framework, needs
 from formation.laws.protocol import LEADER_FIRST_FOLLOWER
 from formation.measurements import ANGLE, KINDS, RATIO, perfect
-from scenarios.definition.law_file import LawFile
+from scenarios.definition.files.law_file import LawFile
 from scenarios.errors import InputError, did_you_mean
 
 Real = NDArray[np.float64]

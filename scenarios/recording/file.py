@@ -9,7 +9,7 @@ import hashlib
 import os
 from pathlib import Path
 
-from scenarios.definition.reading import open_regular, read_regular
+from scenarios.definition.files.reading import open_regular, read_regular
 from scenarios.storage.files import put
 
 

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from formation import agents
-from scenarios.definition import law_file
 from scenarios.definition.experiment import Experiment, build
+from scenarios.definition.files import law_file
 from scenarios.definition.load import ScenarioFile, library, validate, with_changes
 from scenarios.errors import InputError
 from scenarios.storage import run_folder

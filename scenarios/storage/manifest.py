@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from scenarios.definition.reading import read_regular
+from scenarios.definition.files.reading import read_regular
 from scenarios.storage import scratch
 
 NAME = "manifest.sha256"

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from scenarios.definition.reading import read_json
+from scenarios.definition.files.reading import read_json
 from scenarios.errors import InputError
 from scenarios.storage import manifest, scratch
 from scenarios.storage.files import write_json
@@ -204,8 +204,8 @@ def _read_scenario(folder: Path, result: Result) -> ScenarioFile:
     Raises:
         InputError: it cannot be used, or is another one.
     """
-    from scenarios.definition import law_file
     from scenarios.definition.digest import digest
+    from scenarios.definition.files import law_file
     from scenarios.definition.load import ScenarioFile, validate
 
     path = folder / SCENARIO

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from robots.rps.simulation import Record
-from scenarios.definition.reading import read_json
+from scenarios.definition.files.reading import read_json
 from scenarios.errors import InputError
 from scenarios.simulation.script.frames import Frames
 from scenarios.storage.files import write_json

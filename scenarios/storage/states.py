@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from robots.safety.protocol import BLOCKERS, WALLS
 from robots.worlds import NOTHING
 from scenarios.definition.experiment import Experiment
-from scenarios.definition.reading import open_regular
+from scenarios.definition.files.reading import open_regular
 from scenarios.errors import InputError
 from scenarios.simulation.loop import periods
 from scenarios.simulation.trajectory import Trajectory

@@ -18,7 +18,7 @@ from robots.identification.reading import read_arrays
 from robots.identification.reckoning import WINDOW, Reckoning, dead_reckoning
 from robots.identification.synthetic import synthesise, way_of
 from robots.model import GTERNAL
-from scenarios.definition import robot_file
+from scenarios.definition.files import robot_file
 from scenarios.documents import markdown_table
 from scenarios.errors import InputError
 from scenarios.terminal import new_table, print_table

@@ -11,8 +11,8 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 
 from robots.model import GTERNAL
-from scenarios.figures.encode import OnFrame, write_film
-from scenarios.figures.film import DOTS_PER_INCH, Pixels
+from scenarios.figures.films.encode import OnFrame, write_film
+from scenarios.figures.films.film import DOTS_PER_INCH, Pixels
 from scenarios.figures.floor import limits, placed, prepare, wedge
 from scenarios.figures.palette import agent_colour
 from scenarios.figures.scripts.overview import BOTTOM, FLOOR, LEFT, RIGHT
@@ -21,12 +21,12 @@ from scenarios.storage.script_folder import ScriptRun
 
 
 def animate_script(run: ScriptRun, path: Path, speed: float, fps: float, on_frame: OnFrame) -> None:
-    """Write the film of a run as ``path``, a .gif or .mp4 file; see :func:`scenarios.figures.encode.write_film`."""
+    """Write the film of a run as ``path``, .gif or .mp4; see :func:`scenarios.figures.films.encode.write_film`."""
     write_film(lambda: ScriptFilm(run, speed, fps), float(run.record.t[-1]), path, speed, fps, on_frame)
 
 
 class ScriptFilm:
-    """The frames of a run: robots and their paths on the floor. See :class:`scenarios.figures.film.Film`."""
+    """The frames of a run: robots and their paths on the floor. See :class:`scenarios.figures.films.film.Film`."""
 
     def __init__(self, run: ScriptRun, speed: float, fps: float) -> None:
         self._record = run.record

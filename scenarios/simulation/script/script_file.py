@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 
 from robots.rps.hook import MODULES, Version, made
-from scenarios.definition.reading import read_regular
+from scenarios.definition.files.reading import read_regular
 from scenarios.errors import InputError
 
 COMMON = frozenset({"axes", "figure", "poses", "velocities", "obstacles", "initial_conditions", "robot", "look"})

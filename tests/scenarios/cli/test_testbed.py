@@ -9,8 +9,8 @@ import pytest
 
 from robots.identification.synthetic import random_way, synthesise
 from robots.measured import MEASURED
-from scenarios.definition import robot_file
 from scenarios.definition.experiment import open_experiment
+from scenarios.definition.files import robot_file
 from scenarios.definition.load import load
 from scenarios.errors import InputError
 from scenarios.simulation.loop import simulate

@@ -15,7 +15,7 @@ from PIL import Image
 from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.errors import InputError
 from scenarios.figures import animate, encode
-from scenarios.figures.film import Film, frame_rows
+from scenarios.figures.films.film import Film, frame_rows
 from scenarios.figures.palette import agent_colour, rgb
 from scenarios.figures.style import print_style
 from scenarios.measures.metrics import Metrics, measure

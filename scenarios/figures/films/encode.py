@@ -13,7 +13,7 @@ from PIL import Image
 
 from scenarios.definition.experiment import Experiment
 from scenarios.errors import InputError
-from scenarios.figures.film import Film, Pixels
+from scenarios.figures.films.film import Film, Pixels
 from scenarios.figures.style import print_style
 from scenarios.measures.metrics import Metrics
 from scenarios.simulation.trajectory import Trajectory
@@ -61,7 +61,7 @@ def animate(
 
 
 class Reel(Protocol):
-    """What a film is made of; see :class:`scenarios.figures.film.Film`."""
+    """What a film is made of; see :class:`scenarios.figures.films.film.Film`."""
 
     rows: NDArray[np.intp]
     size: tuple[int, int]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
-from scenarios.definition.reading import read_regular
+from scenarios.definition.files.reading import read_regular
 from scenarios.errors import InputError
 
 LONGEST_MESSAGE = 200

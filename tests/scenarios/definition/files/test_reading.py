@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.definition import law_file, load
-from scenarios.definition.reading import read_json, read_regular
+from scenarios.definition.files import law_file, load
+from scenarios.definition.files.reading import read_json, read_regular
 from scenarios.errors import InputError
 from scenarios.studies.check import baseline
 
