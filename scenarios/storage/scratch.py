@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from scenarios.errors import InputError
+from scenarios.work.signals import Held
 
 if TYPE_CHECKING:
     from filelock import FileLock
@@ -72,6 +73,25 @@ def sweep(parent: Path) -> None:
 
 @contextmanager
 def _claimed(place: Path, exclusive: bool, patience: float) -> Iterator[Path]:
+    folder, lock = None, None
+    try:
+        with Held():
+            folder, lock = _make(place, exclusive, patience)
+        yield folder
+    finally:
+        if folder is not None and lock is not None:
+            with Held():
+                _put_back(folder)
+                _remove(folder, lock)
+
+
+def _make(place: Path, exclusive: bool, patience: float) -> tuple[Path, FileLock]:
+    """A scratch folder that nobody else has, and its lock, held.
+
+    Raises:
+        InputError: another process works for this place.
+        OSError: the folder cannot be written.
+    """
     stem = place.name if len(os.fsencode(place.name)) <= LONGEST_NAME else _digest(place.name)
     while True:
         if exclusive:
@@ -83,18 +103,14 @@ def _claimed(place: Path, exclusive: bool, patience: float) -> Iterator[Path]:
             lock = _lock(folder, patience)
         except FileNotFoundError:
             continue  # swept up before it was locked
-        if lock is not None:
-            break
-        if exclusive:
-            raise InputError(f"{place}: another process is writing it, wait until it is done or name another place")
-    try:
+        if lock is None:
+            if exclusive:
+                raise InputError(f"{place}: another process is writing it, wait until it is done or name another place")
+            continue
         if exclusive:
             _put_back(folder)
             _empty(folder)  # a killed process may have left it
-        yield folder
-    finally:
-        _put_back(folder)
-        _remove(folder, lock)
+        return folder, lock
 
 
 def _lock(folder: Path, patience: float) -> FileLock | None:
