@@ -250,8 +250,10 @@ def option_case(rng: random.Random, folder: Path) -> tuple[list[str], str | None
         del arguments[rng.randrange(1, len(arguments) + 1) :]
     if rng.random() < 0.1:
         arguments.insert(rng.randrange(len(arguments) + 1), rng.choice(STRINGS[:12]))
-    if "reproduce" in arguments[:1] and "0" not in arguments:
+    if arguments[0] == "reproduce":
         arguments += ["--workers", "0"]  # it takes minutes
+    if arguments[0] == "laws" and "--starts" not in arguments:
+        arguments += ["--starts", "3"]
     answer = command(*arguments)
     wrong = complaint(answer, *arguments, "--", "argument", "command")
     if wrong is None and (folder / "full" / "thesis.tex").exists() is False:
