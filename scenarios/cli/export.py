@@ -55,7 +55,7 @@ def export(
     experiment = open_experiment(scenario, changes, duration)
     text = script(experiment, seed)
     notes = remarks(experiment, seed)
-    if (remark := crowded(start_poses(experiment, seed))) is not None:
+    if (remark := crowded(experiment, start_poses(experiment, seed))) is not None:
         notes.append(remark)
     for remark in notes:
         click.echo(f"note: {remark}", err=True)

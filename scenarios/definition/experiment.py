@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from formation import (
     LAWS,
@@ -31,6 +31,7 @@ from robots.measured import MeasuredModel
 from robots.obstacles import Obstacle
 from robots.safety import FilterSettings
 from scenarios.definition.bounds import LONGEST_RUN, check_size
+from scenarios.definition.choice import chosen
 from scenarios.definition.files import robot_file
 from scenarios.definition.formations import Aim, build_aim, with_graph
 from scenarios.definition.load import ScenarioFile, load
@@ -56,6 +57,7 @@ class Experiment:
 
     Attributes:
         file: the scenario with its origin.
+        numbers: of the agents as the file has them, row by row; 1..n but for a graph that is not given.
         aim: the formation that the law is made for, and the angles that are compared.
         starts: the initial state, as far as the scenario fixes it.
         phases: the maneuver, a single phase for shape control.
@@ -66,6 +68,7 @@ class Experiment:
     """
 
     file: ScenarioFile
+    numbers: tuple[int, ...]
     aim: Aim
     starts: Starts
     phases: tuple[Phase, ...]
@@ -131,6 +134,23 @@ class Experiment:
         """Number of agents."""
         return self.graph.n
 
+    def number(self, row: int) -> int:
+        """The number by which people know the agent in a row."""
+        return self.numbers[row]
+
+    def numbered(self, rows: ArrayLike) -> NDArray[np.intp]:
+        """The numbers of agents given by row, same shape."""
+        return np.array(self.numbers, dtype=np.intp)[np.asarray(rows, dtype=np.intp)]
+
+    def name(self, row: int) -> str:
+        """How messages, tables and recordings name the agent in a row: ``"agent 3"``."""
+        return f"agent {self.number(row)}"
+
+    @cached_property
+    def angle_names(self) -> list[str]:
+        """How each angle is written: ``"alpha(3;2,4)"``, agents by number."""
+        return [f"alpha({v};{a},{b})" for v, a, b in self.numbered(self.angles.triples).tolist()]
+
     @property
     def goal(self) -> float:
         """Bound on the sum of the absolute angle errors, radians."""
@@ -193,7 +213,8 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
     Raises:
         InputError: anything in the scenario that cannot be used, with file and field.
     """
-    scenario, path = file.scenario, file.path
+    path = file.path
+    scenario, numbers = chosen(path, file.scenario)
     if duration is not None and not (np.isfinite(duration) and duration > 0.0):
         raise InputError(f"--duration: expected a positive number of seconds, got {duration:g}")
     check_size(path, scenario, duration)
@@ -212,6 +233,7 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
         raise InputError(f"{path}: law.activation: 'sequential' needs a leader-first-follower graph")
     return Experiment(
         file=file,
+        numbers=numbers or tuple(range(1, aim.formation.graph.n + 1)),
         aim=aim,
         starts=build_starts(path, scenario, aim.formation, arena),
         phases=phases,

@@ -145,7 +145,7 @@ def validate(data: Mapping[str, Any], file: str) -> Scenario:
             raise InputError(f"{file}: agents: agent {agent.id} is listed twice")
         seen.add(agent.id)
     for number in range(1, len(seen) + 1):
-        if number not in seen:
+        if number not in seen and scenario.graph == "given":
             raise InputError(f"{file}: agents: agent {number} is missing, agents are numbered 1 to {len(seen)}")
     if (scenario.random_formation is None) == (not scenario.agents):
         raise InputError(f"{file}: agents: expected either agents or random_formation")

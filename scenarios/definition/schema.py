@@ -284,8 +284,11 @@ class Scenario(Table):
     random_start: RandomStartTable | None = None
     """In place of the agents' own `start`."""
     target: TargetTable = TargetTable()
-    graph: Literal["given", "design"] = "given"
-    """Who senses whom: as the agents' neighbours say, or the kind that the law needs, built from the target."""
+    graph: Literal["given", "subgraph", "design"] = "given"
+    """Who senses whom: as the agents' neighbours say; the leader-first-follower graph inside what they say, for any
+    numbering and with edges to spare; or the kind that the law needs, built from the target."""
+    leaders: tuple[AgentNumber, AgentNumber] | None = None
+    """Numbers of the leader and of the first follower where the graph is not given; 1 and 2 where absent."""
     law: LawTable = LawTable()
     phases: Annotated[tuple[PhaseTable, ...], Field(max_length=LONGEST_RUN)] = ()
     velocity_known_by: Literal["all", "leader"] = "all"

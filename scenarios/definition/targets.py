@@ -37,7 +37,7 @@ def build_target(path: str, scenario: Scenario) -> tuple[TargetFormation, AngleS
         InputError: a graph that breaks Assumption 1, a degenerate target, angles that fit no shape or another one.
     """
     if scenario.random_formation is not None:
-        target = _random(path, scenario.random_formation)
+        target = drawn_target(path, scenario.random_formation)
     else:
         with located(path, "agents"):
             graph = _graph(scenario.agents)
@@ -75,7 +75,12 @@ def _graph(given: tuple[AgentTable, ...]) -> SensingGraph:
     return SensingGraph.from_edges(len(given), agents.rows(edges))
 
 
-def _random(path: str, table: RandomFormationTable) -> TargetFormation:
+def drawn_target(path: str, table: RandomFormationTable) -> TargetFormation:
+    """The target of a random formation.
+
+    Raises:
+        InputError: the disc has no room for it.
+    """
     with located(path, "random_formation"):
         return random_target(
             table.agents,

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from formation import agents
 from robots import GTERNAL, ROBOTARIUM_FLOOR
 from robots.model import CONTROL_PERIOD
 from robots.robotarium import MOST_ROBOTS
@@ -45,18 +44,18 @@ def start_poses(experiment: Experiment, seed: int) -> Real:
     if (outside := np.flatnonzero(~ROBOTARIUM_FLOOR.contains(poses[:, :2]))).size:
         x, y = poses[outside[0], :2]
         raise InputError(
-            f"{path}: agents[id {agents.number(outside[0])}].start: with the heading of seed {seed} its axle is at "
+            f"{path}: agents[id {experiment.number(outside[0])}].start: with the heading of seed {seed} its axle is at "
             f"({x:.3f}, {y:.3f}) m, expected a place on the testbed's floor"
         )
     return poses
 
 
-def crowded(poses: Real) -> str | None:
+def crowded(experiment: Experiment, poses: Real) -> str | None:
     """A remark on the closest pair of start poses (n, 3), where the testbed may fail to bring robots there."""
     near = separation(poses[None, :, :2])
     if not near.distance[0] < ROOM_TO_ARRIVE:
         return None
-    a, b = agents.numbers(near.pairs[0])
+    a, b = experiment.numbered(near.pairs[0])
     return (
         f"agents {a} and {b} start {near.distance[0]:.2f} m apart; below {ROOM_TO_ARRIVE} m the Robotarium's own drive "
         "to the start often gets stuck: try another --seed or --set agents.N.start"

@@ -69,7 +69,7 @@ def _legend(experiment: Experiment, slowest: float | None) -> list[Line2D]:
         for row, rate in zip(
             experiment.target.graph.followers.tolist(), decay_rates(experiment.target).tolist(), strict=True
         ):
-            text = f"agent {agents.number(row)}, {rate:.2f} /s"
+            text = f"agent {experiment.number(row)}, {rate:.2f} /s"
             handles.append(Line2D([], [], color=agent_colour(row), linewidth=1.4, label=text))
     return handles
 

@@ -11,7 +11,6 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch
 from numpy.typing import NDArray
 
-from formation import agents
 from scenarios.definition.experiment import Experiment
 from scenarios.figures.palette import INK, agent_colour
 from scenarios.figures.style import COLUMN, SMALL, panel, sheet
@@ -46,7 +45,7 @@ def graph(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> F
     added = LineCollection(list(segments[sensed:]), colors=INK, linewidths=width, linestyles=[(0, (4, 2))], zorder=1)
     right.add_collection(added)
     for axes in (left, right):
-        _nodes(axes, positions, size)
+        _nodes(axes, experiment, positions, size)
     left.set_axis_off()
     left.set_title("(a) sensing graph", pad=5.0)
     right.set_title("(b) target formation", pad=5.0)
@@ -98,7 +97,7 @@ def _arrow(tail: Real, head: Real, node: float, width: float) -> FancyArrowPatch
     )
 
 
-def _nodes(axes: Axes, positions: Real, size: float) -> None:
+def _nodes(axes: Axes, experiment: Experiment, positions: Real, size: float) -> None:
     edges = [to_rgb(agent_colour(row)) for row in range(len(positions))]
     faces = [tuple(1.0 - TINT * (1.0 - c) for c in edge) for edge in edges]
     axes.scatter(
@@ -107,4 +106,4 @@ def _nodes(axes: Axes, positions: Real, size: float) -> None:
     if len(positions) > MANY:
         return
     for row, (x, y) in enumerate(positions):
-        axes.text(x, y, str(agents.number(row)), fontsize=SMALL, ha="center", va="center_baseline", zorder=4)
+        axes.text(x, y, str(experiment.number(row)), fontsize=SMALL, ha="center", va="center_baseline", zorder=4)

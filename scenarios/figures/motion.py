@@ -7,7 +7,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from formation import agents
 from scenarios.definition.experiment import Experiment
 from scenarios.figures.floor import Limits, draw_edges, draw_robots, draw_trails, limits, prepare
 from scenarios.figures.labels import Labels, points_per_metre
@@ -109,7 +108,9 @@ def _label(axes: Axes, experiment: Experiment, trajectory: Trajectory, rows: lis
         for agent in range(experiment.n):
             moved = np.linalg.norm(points[rows[-1], agent] - points[rows[0], agent])
             if row == rows[-1] or moved > body:
-                labels.put(points[row, agent], str(agents.number(agent)), distance, size, crowded=experiment.n > MANY)
+                labels.put(
+                    points[row, agent], str(experiment.number(agent)), distance, size, crowded=experiment.n > MANY
+                )
     if len(rows) > 2:
         for row in rows:
             highest = points[row, points[row, :, 1].argmax()]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from formation import agents
 from robots.testbed import COLLISION_DISTANCE
 from scenarios.definition.experiment import Experiment
 from scenarios.figures.palette import ALARM, INK
@@ -32,7 +31,7 @@ def separation(experiment: Experiment, trajectory: Trajectory, metrics: Metrics)
     width = experiment.robot.chassis.width
     axes.axhline(width, color=INK, linewidth=0.6, linestyle=":", label=f"chassis width, {width:g} m")
     lowest = int(np.nanargmin(distance))
-    pair = agents.numbers(metrics.separation.pairs[lowest])
+    pair = experiment.numbered(metrics.separation.pairs[lowest])
     axes.plot(t[lowest], distance[lowest], "o", color=INK, markersize=2.5, zorder=5)
     axes.set(xlim=(t[0], t[-1]), ylim=(0.0, 1.1 * np.nanmax(distance)), xlabel=TIME, ylabel="separation (m)")
     mark_phases(axes, experiment, names=True)

@@ -59,7 +59,7 @@ def draw_errors(axes: Axes, experiment: Experiment, trajectory: Trajectory, metr
     """Each angle error in the colour of its vertex; a line style for each angle at one vertex."""
     seen: dict[int, int] = {}
     for column, (vertex, name) in enumerate(
-        zip(experiment.angles.triples[:, 0].tolist(), experiment.angles.names, strict=True)
+        zip(experiment.angles.triples[:, 0].tolist(), experiment.angle_names, strict=True)
     ):
         style = DASHES[seen.setdefault(vertex, 0) % len(DASHES)]
         seen[vertex] += 1

@@ -23,10 +23,10 @@ def contacts(experiment: Experiment, trajectory: Trajectory) -> dict[str, Any]:
     first = int(periods[0])
     return {
         "periods": len(periods),
-        "agents": agents.numbers(np.flatnonzero(touches.any(axis=0))).tolist(),
+        "agents": experiment.numbered(np.flatnonzero(touches.any(axis=0))).tolist(),
         "first": {
             "time_s": float(trajectory.t[first]),
-            "agents": agents.numbers(np.flatnonzero(touches[first])).tolist(),
+            "agents": experiment.numbered(np.flatnonzero(touches[first])).tolist(),
             "touching": touching(experiment, trajectory, first),
         },
     }

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from formation import agents
 from robots.testbed import Occurrence, Violation
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.contacts import contacts
@@ -42,6 +41,7 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
         "asked_duration_s": experiment.asked_duration,
         "outcome": metrics.outcome,
         "goal_rad": experiment.goal,
+        "agents": list(experiment.numbers),
         "angles": [
             {
                 "name": name,
@@ -51,7 +51,7 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
                 "axle_error_rad": _number(axle_error),
             }
             for name, target, error, axle_error in zip(
-                experiment.angles.names, experiment.target_angles, final, axle_final, strict=True
+                experiment.angle_names, experiment.target_angles, final, axle_final, strict=True
             )
         ],
         "angle_error_sum_rad": _number(metrics.error_sum[-1]),
@@ -60,12 +60,12 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
         "min_separation": {
             "distance_m": _number(metrics.separation.distance[closest]),
             "time_s": float(trajectory.t[closest]),
-            "agents": agents.numbers(metrics.separation.pairs[closest]).tolist(),
+            "agents": experiment.numbered(metrics.separation.pairs[closest]).tolist(),
         },
         "contacts": contacts(experiment, trajectory),
         "testbed": {
             "accepted": metrics.verdict.accepted,
-            "violations": [_violation(v) for v in metrics.verdict.violations],
+            "violations": [_violation(experiment, v) for v in metrics.verdict.violations],
         },
         "late_rates_per_s": {
             "predicted": predicted_late_rates(experiment, trajectory),
@@ -129,19 +129,19 @@ def _number(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def _violation(violation: Violation) -> dict[str, Any]:
+def _violation(experiment: Experiment, violation: Violation) -> dict[str, Any]:
     return {
         "kind": violation.kind,
         "steps": violation.steps,
-        "first": _occurrence(violation.first),
-        "worst": _occurrence(violation.worst),
+        "first": _occurrence(experiment, violation.first),
+        "worst": _occurrence(experiment, violation.worst),
     }
 
 
-def _occurrence(occurrence: Occurrence) -> dict[str, Any]:
+def _occurrence(experiment: Experiment, occurrence: Occurrence) -> dict[str, Any]:
     return {
         "time_s": occurrence.time,
-        "agents": agents.numbers(occurrence.robots).tolist(),
+        "agents": experiment.numbered(occurrence.robots).tolist(),
         "place_m": [_number(coordinate) for coordinate in occurrence.place],
         "value": _number(occurrence.value),
     }

@@ -35,17 +35,17 @@ def _print_agents(console: Console, experiment: Experiment, found: ClosedForms, 
         columns += ["clear of neighbours (m)", "of others (m)", "nearest"]
     table = new_table(*columns)
     for row in range(experiment.n):
-        cells = [str(agents.number(row)), f"{1e3 * found.noise[row]:.2f}", f"{found.bias[row]:.2f}"]
+        cells = [str(experiment.number(row)), f"{1e3 * found.noise[row]:.2f}", f"{found.bias[row]:.2f}"]
         follower = row - agents.FIRST_ORDINARY
         if near is not None:
-            cells += ["-"] * 3 if follower < 0 else _ways(near, follower)
+            cells += ["-"] * 3 if follower < 0 else _ways(experiment, near, follower)
         table.add_row(*cells)
     print_table(console, table)
 
 
-def _ways(near: Passages, follower: int) -> list[str]:
+def _ways(experiment: Experiment, near: Passages, follower: int) -> list[str]:
     other = int(near.nearest[follower])
-    who = "-" if other < 0 else str(agents.number(other))
+    who = "-" if other < 0 else str(experiment.number(other))
     return [f"{near.neighbours[follower]:.3f}", f"{near.others[follower]:.3f}", who]
 
 
@@ -131,7 +131,7 @@ def _passages(experiment: Experiment, near: Passages) -> list[str]:
     ]
     if near.crossings:
         named = [
-            f"{agents.number(m)} crosses {agents.number(k)}'s to {agents.number(i)}"
+            f"{experiment.number(m)} crosses {experiment.number(k)}'s to {experiment.number(i)}"
             for k, i, m in near.crossings[:MOST_CROSSINGS]
         ]
         rest = len(near.crossings) - len(named)

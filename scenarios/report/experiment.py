@@ -37,7 +37,7 @@ def print_experiment(console: Console, experiment: Experiment, seed: int) -> Non
     for remark in remarks(experiment, seed):
         console.print(escape(remark), style="bold")
     table = new_table("angle", "target (deg)")
-    for name, value in zip(experiment.angles.names, np.degrees(experiment.target_angles), strict=True):
+    for name, value in zip(experiment.angle_names, np.degrees(experiment.target_angles), strict=True):
         table.add_row(name, f"{value:.4f}")
     console.print("\n[bold]Angles, counter-clockwise, alpha(vertex;from,to)[/bold]")
     print_table(console, table)
@@ -53,14 +53,14 @@ def _print_assumptions(console: Console, experiment: Experiment, start: Any) -> 
     graph = target.graph
     sine = np.abs(np.sin(target.follower_angles))
     worst = int(sine.argmin())
-    flattest = tuple(agents.numbers(graph.triangles[worst]).tolist())
+    flattest = tuple(experiment.numbered(graph.triangles[worst]).tolist())
     console.print(
         f"  1  leader-first-follower sensing graph: holds, {graph.n} agents, {len(graph.edges)} edges, "
         f"depth {graph.depth.max()}"
     )
     console.print(
         f"  2  strongly nondegenerate target: holds, flattest triangle {flattest}, "
-        f"|sin| = {digits(sine[worst], 3)} at {agents.name(graph.followers[worst])}"
+        f"|sin| = {digits(sine[worst], 3)} at {experiment.name(graph.followers[worst])}"
     )
     console.print(f"  p_1(0) != p_2(0): holds, {distance:.3f} m apart\n")
 
@@ -72,8 +72,8 @@ def _print_graph(console: Console, experiment: Experiment, start: Any) -> None:
     console.print(f"  {condition} sensing graph: holds, {graph.n} agents, {len(graph.edges)} edges, {origin}\n")
     table = new_table("agent", "senses", "start (m)")
     for row in range(graph.n):
-        senses = [str(agents.number(i)) for k, i in graph.edges if k == row]
-        table.add_row(str(agents.number(row)), ", ".join(senses) or "-", place(start[row]))
+        senses = [str(experiment.number(i)) for k, i in graph.edges if k == row]
+        table.add_row(str(experiment.number(row)), ", ".join(senses) or "-", place(start[row]))
     print_table(console, table)
 
 
@@ -97,7 +97,7 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
     )
     for row in range(graph.n):
         follower = row - agents.FIRST_ORDINARY
-        senses = [str(agents.number(i)) for k, i in graph.edges if k == row]
+        senses = [str(experiment.number(i)) for k, i in graph.edges if k == row]
         cells = ["-"] * 4
         if follower >= 0:
             cells = [
@@ -107,7 +107,7 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
                 f"{margins[follower]:+.3f}" if still else "-",
             ]
         table.add_row(
-            str(agents.number(row)),
+            str(experiment.number(row)),
             ", ".join(senses) or "-",
             str(graph.depth[row]),
             *cells[:3],

@@ -104,7 +104,7 @@ def _print_ends(console: Console, result: dict[str, Any]) -> None:
         follower = row - agents.FIRST_ORDINARY
         late = [rates[kind][follower] if follower >= 0 and rates[kind] else None for kind in ("predicted", "measured")]
         table.add_row(
-            str(agents.number(row)),
+            str(result["agents"][row]),
             "-" if predicted is None else place(predicted),
             place(measured),
             cell(distance, ".1e"),

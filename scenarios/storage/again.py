@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from formation import agents
 from scenarios.definition.experiment import Experiment, build
 from scenarios.definition.files import law_file
 from scenarios.definition.load import ScenarioFile, library, validate, with_changes
@@ -69,9 +68,11 @@ def begin_where(experiment: Experiment, folder: Path) -> Experiment:
     content = experiment.scenario.model_dump(mode="json")
     if experiment.scenario.random_formation is not None:
         content |= {"random_formation": None, "agents": _agents(experiment)}
+        if experiment.scenario.graph == "design":
+            content["graph"] = "subgraph"
     content["random_start"] = None
     for agent in content["agents"]:
-        row = agents.rows(agent["id"])
+        row = experiment.numbers.index(agent["id"])
         agent["start"] = points[row].tolist()
         agent["heading_deg"] = float(np.degrees(np.mod(headings[row], 2.0 * np.pi)))
     file = experiment.file
@@ -83,9 +84,9 @@ def _agents(experiment: Experiment) -> list[dict[str, Any]]:
     """The agents of a random formation as a scenario lists them."""
     senses: list[list[int]] = [[] for _ in range(experiment.n)]
     for observer, observed in experiment.graph.edges.tolist():
-        senses[observer].append(agents.number(observed))
+        senses[observer].append(experiment.number(observed))
     return [
-        {"id": agents.number(row), "neighbours": senses[row], "target": experiment.target.positions[row].tolist()}
+        {"id": experiment.number(row), "neighbours": senses[row], "target": experiment.target.positions[row].tolist()}
         for row in range(experiment.n)
     ]
 

@@ -165,7 +165,7 @@ def read(folder: Path, under_way: bool = False) -> Run:
         ("plant", result.plant, experiment.plant),
         ("safety", result.safety, experiment.safety),
         ("goal_rad", result.goal_rad, experiment.goal),
-        ("angles", [angle.name for angle in result.angles], list(experiment.angles.names)),
+        ("angles", [angle.name for angle in result.angles], list(experiment.angle_names)),
     ):
         if recorded != expected:
             raise InputError(f"{folder / RESULT}: {key}: expected {expected!r} as in {SCENARIO}, got {recorded!r:.80}")

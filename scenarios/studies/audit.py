@@ -9,7 +9,6 @@ import numpy as np
 from rich.console import Console
 from rich.markup import escape
 
-from formation import agents
 from formation.audit import Finding, Subject, audit
 from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.definition.own_law import OwnLaw
@@ -64,7 +63,7 @@ def _start_speed(experiment: Experiment) -> Finding:
     subject = Subject(experiment.law, experiment.formation, phase.delta)
     speed = np.linalg.norm(subject(experiment.initial_points(0)) + phase.velocity, axis=1)
     fastest = int(speed.argmax())
-    remark = f"{agents.name(fastest)}; the wheels do {limit:g} m/s{': cut' if speed[fastest] > limit else ''}"
+    remark = f"{experiment.name(fastest)}; the wheels do {limit:g} m/s{': cut' if speed[fastest] > limit else ''}"
     return Finding("speed at the start", None, float(speed[fastest]), "m/s", remark)
 
 

@@ -16,7 +16,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from formation import agents
 from scenarios.definition.experiment import Experiment
 from scenarios.figures.floor import limits, placed, prepare, wedge
 from scenarios.figures.palette import FAINT, INK, agent_colour
@@ -105,7 +104,7 @@ class Film:
         self._noses = PolyCollection([], facecolors="white", linewidths=0.0)
         self._dots = Line2D([], [], linestyle="", marker="o", markersize=4.0, color=INK)
         self._numbers = [
-            self.floor.text(0.0, 0.0, str(agents.number(row)), fontsize=SMALL, ha="left", va="bottom")
+            self.floor.text(0.0, 0.0, str(self._experiment.number(row)), fontsize=SMALL, ha="left", va="bottom")
             for row in range(n if n <= MANY else 0)
         ]
         self._clock = self.floor.text(1.0, 1.02, "", transform=self.floor.transAxes, ha="right", va="bottom")

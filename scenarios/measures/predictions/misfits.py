@@ -12,7 +12,6 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from formation import agents
 from robots.testbed import COLLISION_DISTANCE, OBSTACLE_DISTANCE, collision_centres, separation
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.tracking import predicted_ends
@@ -49,7 +48,7 @@ def start_misfits(experiment: Experiment, points: Real, headings: Real) -> list[
     centres = collision_centres(poses)
     found = [*_too_close(experiment, centres), *_in_a_wall(experiment, centres), *_in_an_obstacle(experiment, centres)]
     outside = np.flatnonzero(~experiment.arena.contains(poses[:, :2]))
-    found += [f"{_at(row, points)}: its axle is off the floor" for row in outside[:MOST_NAMED]]
+    found += [f"{_at(experiment, row, points)}: its axle is off the floor" for row in outside[:MOST_NAMED]]
     if len(outside) > MOST_NAMED:
         found.append(f"{len(outside) - MOST_NAMED} more agents: off the floor")
     return [f"the run starts with {what}" for what in found]
@@ -60,7 +59,7 @@ def _at_end(experiment: Experiment, end: Real) -> Iterator[str]:
     depth, ahead = _depth(experiment, end), experiment.nid.projection_distance
     row = int(depth.argmin())
     if depth[row] < -ahead:  # its axle too, whichever way it heads
-        yield f"{_at(row, end)}: off the floor"
+        yield f"{_at(experiment, row, end)}: off the floor"
     else:
         yield from _in_a_wall(experiment, end)
     yield from _in_an_obstacle(experiment, end)
@@ -74,7 +73,7 @@ def _depth(experiment: Experiment, points: Real) -> Real:
 
 def _too_close(experiment: Experiment, points: Real) -> Iterator[str]:
     near = separation(points[None])
-    distance, pair = float(near.distance[0]), agents.numbers(near.pairs[0]).tolist()
+    distance, pair = float(near.distance[0]), experiment.numbered(near.pairs[0]).tolist()
     apart = f"agents {pair[0]} and {pair[1]} {distance:.3f} m apart"
     kept = experiment.filter_settings.safe_distance
     if distance < COLLISION_DISTANCE:
@@ -89,16 +88,17 @@ def _in_a_wall(experiment: Experiment, points: Real) -> Iterator[str]:
     depth = _depth(experiment, points)
     row = int(depth.argmin())
     if experiment.arena.walls and 0.0 <= depth[row] < min(chassis.length, chassis.width) / 2.0:
-        yield f"{_at(row, points)}: {depth[row]:.3f} m from a wall, in which its chassis stands"
+        yield f"{_at(experiment, row, points)}: {depth[row]:.3f} m from a wall, in which its chassis stands"
 
 
 def _in_an_obstacle(experiment: Experiment, points: Real) -> Iterator[str]:
     for number, obstacle in enumerate(experiment.arena.obstacles, start=1):
         gaps = obstacle.distance(points)
         if gaps.min() < OBSTACLE_DISTANCE:
-            yield f"{_at(int(gaps.argmin()), points)}: less than {OBSTACLE_DISTANCE:g} m from obstacle {number}"
+            where = _at(experiment, int(gaps.argmin()), points)
+            yield f"{where}: less than {OBSTACLE_DISTANCE:g} m from obstacle {number}"
 
 
-def _at(row: int, end: Real) -> str:
+def _at(experiment: Experiment, row: int, end: Real) -> str:
     x, y = np.round(end[row], 2) + 0.0  # no minus before a zero
-    return f"{agents.name(row)} at ({x:g}, {y:g}) m"
+    return f"{experiment.name(row)} at ({x:g}, {y:g}) m"

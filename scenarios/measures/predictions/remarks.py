@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from formation import agents, decay_rates
+from formation import decay_rates
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.predictions.misfits import misfits, start_misfits
 
@@ -33,7 +33,7 @@ def _slow(experiment: Experiment) -> Iterator[str]:
     slow = np.flatnonzero(exponents < LEAST_EXPONENT)
     slow = slow[np.argsort(rates[slow], kind="stable")]
     for row in slow[:MOST_NAMED]:
-        i, j, k = agents.numbers(experiment.target.graph.triangles[row])
+        i, j, k = experiment.numbered(experiment.target.graph.triangles[row])
         yield (
             f"agent {k} closes in at {rates[row]:.2g} 1/s, sin^2 of the angle at which it sees {i} and {j}: in "
             f"{seconds:g} s its distance shrinks to {np.exp(-exponents[row]):.3g} of what it was, it cannot settle "

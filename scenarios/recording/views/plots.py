@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from formation import agents, fit_similarity, wrap
+from formation import fit_similarity, wrap
 from robots.testbed import COLLISION_DISTANCE
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.tracking import moving_ends
@@ -29,12 +29,12 @@ SMALLEST = 1e-16
 def styles(recorder: Recorder, experiment: Experiment) -> None:
     """Names and colours of all series. What belongs to one agent has its colour."""
     vertices = experiment.angles.triples[:, 0]
-    _style(recorder, f"{ANGLES}/value", experiment.angles.names, [style.agent_colour(row) for row in vertices])
+    _style(recorder, f"{ANGLES}/value", experiment.angle_names, [style.agent_colour(row) for row in vertices])
     _style(recorder, f"{ERROR_SUM}/value", ["sum of |error|"], [recorder.colour])
     _style(recorder, f"{ERROR_SUM}/goal", ["goal"], [style.GOAL])
     _style(recorder, f"{SEPARATION}/value", ["closest pair"], [recorder.colour])
     _style(recorder, f"{SEPARATION}/limit", ["testbed's limit"], [style.LIMIT])
-    names = [f"{agents.number(row)} {side}" for row in range(experiment.n) for side in ("left", "right")]
+    names = [f"{experiment.number(row)} {side}" for row in range(experiment.n) for side in ("left", "right")]
     _style(recorder, f"{WHEELS}/value", names, [style.agent_colour(row // 2) for row in range(2 * experiment.n)])
     _style(recorder, f"{WHEELS}/limit", ["limit", "limit"], [style.LIMIT] * 2)
     for entity in (SCALE, ORIENTATION):
@@ -44,7 +44,7 @@ def styles(recorder: Recorder, experiment: Experiment) -> None:
     _style(recorder, f"{CENTROID}/measured", ["x", "y"], [style.MEASURED, style.SECOND])
     rows = range(experiment.n)
     for entity in (DISTANCE, INTERVENTIONS):
-        numbers = [agents.name(row) for row in rows]
+        numbers = [experiment.name(row) for row in rows]
         _style(recorder, f"{entity}/value", numbers, [style.agent_colour(row) for row in rows])
 
 

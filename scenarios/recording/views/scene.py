@@ -11,7 +11,6 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from formation import agents
 from robots import ROBOTARIUM_FLOOR, Arena, RobotModel
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.tracking import predicted_ends
@@ -83,7 +82,7 @@ def obstacles(recorder: Recorder, experiment: Experiment) -> None:
 
 def bodies(recorder: Recorder, experiment: Experiment) -> None:
     """The body of each robot, with its number."""
-    names = [str(agents.number(row)) for row in range(experiment.n)]
+    names = [str(experiment.number(row)) for row in range(experiment.n)]
     draw_bodies(recorder, experiment.robot, experiment.nid.projection_distance, names)
 
 
@@ -105,7 +104,7 @@ def draw_bodies(recorder: Recorder, robot: RobotModel, point: float, names: Sequ
 
 def poses(recorder: Recorder, piece: Piece) -> None:
     """Where each robot is and where it points."""
-    names = [str(agents.number(row)) for row in range(piece.experiment.n)]
+    names = [str(piece.experiment.number(row)) for row in range(piece.experiment.n)]
     move_bodies(recorder, piece.t, piece.trajectory.poses, names)
 
 

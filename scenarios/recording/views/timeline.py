@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from formation import agents
 from robots.testbed import COLLISION_DISTANCE
 from robots.worlds import NOTHING
 from scenarios.definition.experiment import Experiment
@@ -59,7 +58,7 @@ def activation(recorder: Recorder, piece: Piece) -> None:
         return
     active = piece.trajectory.active
     rows = piece.changes(active)
-    names = [_numbers(np.flatnonzero(each)) for each in active[rows]]
+    names = [_numbers(piece.experiment, np.flatnonzero(each)) for each in active[rows]]
     _states(recorder, ACTIVE, piece.t[rows], names)
     _events(recorder, "activation", piece.t[rows], [f"active: {name}" for name in names], rr.TextLogLevel.INFO)
 
@@ -80,7 +79,7 @@ def safety(recorder: Recorder, piece: Piece) -> None:
         (2, "safety filter cannot keep all distances of", rr.TextLogLevel.WARN),
     ):
         begins = rows[state[rows] == value]
-        whom = [_numbers(np.flatnonzero((acts, relaxed)[value - 1][row])) for row in begins]
+        whom = [_numbers(piece.experiment, np.flatnonzero((acts, relaxed)[value - 1][row])) for row in begins]
         _events(recorder, "safety", piece.t[begins], [f"{text} {each}" for each in whom], level)
 
 
@@ -93,7 +92,7 @@ def separation(recorder: Recorder, piece: Piece) -> None:
     begins = rows[close[rows]]
     texts = [
         f"agents {i} and {j} come within {COLLISION_DISTANCE:g} m"
-        for i, j in agents.numbers(near.pairs[begins]).tolist()
+        for i, j in piece.experiment.numbered(near.pairs[begins]).tolist()
     ]
     _events(recorder, "separation", piece.t[begins], texts, rr.TextLogLevel.WARN)
 
@@ -108,9 +107,9 @@ def contacts(recorder: Recorder, piece: Piece) -> None:
                 begin[row, min(agent, other), max(agent, other)] = None
     at = sorted(begin)
     texts = [
-        f"{agents.name(one)} touches a wall or an obstacle"
+        f"{piece.experiment.name(one)} touches a wall or an obstacle"
         if other == n
-        else f"agents {agents.number(one)} and {agents.number(other)} touch"
+        else f"agents {piece.experiment.number(one)} and {piece.experiment.number(other)} touch"
         for _, one, other in at
     ]
     _events(recorder, "contacts", piece.t[[row for row, *_ in at]], texts, rr.TextLogLevel.WARN)
@@ -125,12 +124,18 @@ def floor(recorder: Recorder, piece: Piece) -> None:
     for row in range(piece.experiment.n):
         at = piece.changes(outside[:, row])
         leaves = piece.t[at[outside[at, row]]]
-        _events(recorder, "floor", leaves, [f"{agents.name(row)} leaves the floor"] * len(leaves), rr.TextLogLevel.WARN)
+        _events(
+            recorder,
+            "floor",
+            leaves,
+            [f"{piece.experiment.name(row)} leaves the floor"] * len(leaves),
+            rr.TextLogLevel.WARN,
+        )
 
 
-def _numbers(rows: Index) -> str:
+def _numbers(experiment: Experiment, rows: Index) -> str:
     """Agents by number, "1 to 4" where none is left out."""
-    numbers = agents.numbers(rows).tolist()
+    numbers = experiment.numbered(rows).tolist()
     if len(numbers) > 1 and numbers == list(range(numbers[0], numbers[-1] + 1)):
         return f"{numbers[0]} to {numbers[-1]}"
     return ", ".join(str(number) for number in numbers)

@@ -208,9 +208,9 @@ def test_obstacles_and_starts_off_the_floor_are_refused(varied: Callable[..., Ex
 
 
 def test_starts_without_room_to_arrive_are_remarked_on() -> None:
-    crowd, room = (start_poses(open_experiment(name), 0) for name in ("shape", "maneuver-testbed"))
-    assert "agents 1 and 4 start 0.30 m apart" in (crowded(crowd) or "")
-    assert crowded(room) is None
+    crowd, room = (open_experiment(name) for name in ("shape", "maneuver-testbed"))
+    assert "agents 1 and 4 start 0.30 m apart" in (crowded(crowd, start_poses(crowd, 0)) or "")
+    assert crowded(room, start_poses(room, 0)) is None
 
 
 def test_export_prints_or_writes_and_replaces_nothing_unasked(
