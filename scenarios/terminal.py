@@ -19,7 +19,7 @@ from rich.table import Table
 LEFT = frozenset(
     ("scenario", "title", "angle", "agent", "senses", "phase", "plant", "law", "measures", "frame", "fixes")
     + ("key", "kind", "default", "meaning", "changes", "quantity", "result", "replay")
-    + ("check", "verdict", "remark", "script", "differs", "rung")
+    + ("check", "verdict", "remark", "graph", "script", "differs", "rung")
 )
 """Columns of text; all others hold numbers and are aligned right."""
 

@@ -169,10 +169,10 @@ def _kinds(field: Field, task: Task, leaders: tuple[int, int] | None) -> Iterato
         choices = [choice for each in pairs if (choice := shallow(field, each, rate)).whole]
         choices.sort(key=lambda choice: (choice.depth.max(), choice.depth.mean()))
         for choice in choices[: 1 if many else FINALISTS]:
-            yield f"shallow, {rate:g} or more", choice
-            yield f"shallow and quiet, {rate:g} or more", shallow(field, choice.leaders, rate, quiet=True)
+            yield f"shallow {rate:g}", choice
+            yield f"shallow, quiet {rate:g}", shallow(field, choice.leaders, rate, quiet=True)
     for rate in FEW_RATES["quiet"] if many else QUIET_RATES:
         quiet = [quietest(field, each, rate, task.period, task.steered) for each in pairs[: 1 if many else None]]
         quiet = sorted((each for each in quiet if each[1].whole), key=lambda each: each[0])
         for _, choice in quiet[: 1 if many else FINALISTS]:
-            yield f"quiet, {rate:g} or more", choice
+            yield f"quiet {rate:g}", choice

@@ -6,6 +6,9 @@ S_kij = sin^2 of the angle at k between i and j is the follower's rate. Each fun
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -14,17 +17,28 @@ Real = NDArray[np.float64]
 Index = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def _compiled(function: F) -> F:
+    """Compiled on its first call; the machine code is kept for the next process where it can be written."""
+    try:
+        return cast(F, njit(cache=True)(function))
+    except RuntimeError:  # numba found no folder for it
+        return cast(F, njit(function))
+
+
 GOOD_ENOUGH = 0.9999
 """sin^2 at which no better pair is looked for."""
 
 
-@njit(cache=True)
+@_compiled
 def _sine2(directions: Real, k: int, i: int, j: int) -> float:
     cross = directions[k, i, 0] * directions[k, j, 1] - directions[k, i, 1] * directions[k, j, 0]
     return cross * cross
 
 
-@njit(cache=True)
+@_compiled
 def fastest(directions: Real, allowed: Flags, depth: Index, pairs: Index, floor: float) -> float:
     """Take in, one by one, the agent with the largest S of a pair that is in; the smallest S taken, the rate.
 
@@ -72,7 +86,7 @@ def fastest(directions: Real, allowed: Flags, depth: Index, pairs: Index, floor:
     return rate
 
 
-@njit(cache=True)
+@_compiled
 def shallow(directions: Real, gaps: Real, allowed: Flags, depth: Index, pairs: Index, rate: float, quiet: bool) -> int:
     """Take in, round by round, every agent that has a pair with S >= ``rate`` among those in; how many are in.
 
@@ -121,7 +135,7 @@ def shallow(directions: Real, gaps: Real, allowed: Flags, depth: Index, pairs: I
     return count
 
 
-@njit(cache=True)
+@_compiled
 def quietest(
     directions: Real, gaps: Real, allowed: Flags, depth: Index, pairs: Index, cost: Real, rate: float, period: float
 ) -> float:
@@ -180,7 +194,7 @@ def quietest(
     return worst
 
 
-@njit(cache=True)
+@_compiled
 def direct(directions: Real, allowed: Flags, rate: float) -> Index:
     """(n, n) to how many agents each pair, as leaders, gives S >= ``rate`` at once."""
     n = len(directions)

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 
 import click
 
-from scenarios.cli import draw, export, look, many, run, script, study, testbed
+from scenarios.cli import design, draw, export, look, many, run, script, study, testbed
 from scenarios.cli.exits import BAD_INPUT, INTERRUPTED, MISSED
 from scenarios.errors import InputError, did_you_mean, plain
 
@@ -21,6 +21,7 @@ FAMILIES: tuple[tuple[click.Command, ...], ...] = (
     (draw.plot, draw.animate),
     (many.sweep_command, many.check),
     (study.laws, study.audit, study.reproduce),
+    (design.design,),
     (export.export,),
     (script.script,),
     (testbed.identify, testbed.ladder_command),

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from formation import agents
 from robots.safety.protocol import WALLS
 from robots.worlds import NOTHING
 from scenarios.definition.experiment import Experiment
