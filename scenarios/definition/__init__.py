@@ -5,6 +5,7 @@ Nothing here moves a robot.
 
 __all__ = [
     "bounds",
+    "choice",
     "digest",
     "experiment",
     "files",

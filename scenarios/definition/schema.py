@@ -3,6 +3,8 @@
 A scenario is TOML. Units are part of the names. Unknown keys are refused.
 """
 
+# Longer than 300 lines: a scenario file has one schema, with all its tables.
+
 from __future__ import annotations
 
 from typing import Annotated, Literal

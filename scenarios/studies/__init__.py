@@ -3,4 +3,15 @@
 A study opens, runs, measures and prints; how one run is made or measured is not decided here.
 """
 
-__all__ = ["audit", "check", "exported", "identification", "ladder", "laws", "project", "reproduction", "sweep"]
+__all__ = [
+    "audit",
+    "check",
+    "design",
+    "exported",
+    "identification",
+    "ladder",
+    "laws",
+    "project",
+    "reproduction",
+    "sweep",
+]

@@ -1,5 +1,7 @@
 """Whom each robot of a target should sense: candidates side by side, and the scenario of the one that is chosen."""
 
+# Longer than 300 lines: a question, its answer, and the scenario and the table that tell it.
+
 from __future__ import annotations
 
 import csv
