@@ -92,6 +92,9 @@ class Instruments:
 
     A lost edge gives NaN in all that it takes part in.
 
+    Attributes:
+        imperfections: of the sensors.
+
     Args:
         edges: (m, 2) rows (observer, observed).
         corners: (c, 2) rows of ``edges`` that share an observer.
@@ -114,8 +117,8 @@ class Instruments:
         self._edges = np.asarray(edges, dtype=np.intp)
         self._first, self._second = np.asarray(corners, dtype=np.intp).reshape(-1, 2).T
         self._kinds = tuple(kinds)
-        self._imperfections = imperfections or Imperfections()
-        self._places = RelativePositionSensor(self._edges, self._imperfections.position, self._imperfections.bearing)
+        self.imperfections = imperfections or Imperfections()
+        self._places = RelativePositionSensor(self._edges, self.imperfections.position, self.imperfections.bearing)
 
     def measure(self, points: Real, headings: Real, own: Real | None = None) -> Real:
         """(..., m, 2) true relative positions in body frames; see :class:`robots.sensors.RelativePositionSensor`."""
@@ -127,7 +130,7 @@ class Instruments:
         The order is fixed: rotations and offsets, distances, angles, ratios, lost edges, robots that drop out; each
         for all edges, or corners, in their order, and only if its own deviation or probability is not 0.
         """
-        has = self._imperfections
+        has = self.imperfections
         if has == Imperfections():
             return None
         m, c = len(self._edges), len(self._first)

@@ -36,15 +36,27 @@ class Flow:
 
     Attributes:
         points: (runs, n, 2) metres; not finite where a law gave no number.
-        speed: (runs,) greatest speed of an agent there, m/s.
+        velocity: (runs, n, 2) of the agents there, m/s.
         time: (runs,) seconds, the horizon where a run did not rest.
         settled: (runs,) seconds after which ``near`` held until the end; infinite where it does not hold at the end.
     """
 
     points: Real
-    speed: Real
+    velocity: Real
     time: Real
     settled: Real
+
+    @property
+    def speed(self) -> Real:
+        """(runs,) greatest speed of an agent, m/s."""
+        greatest: Real = np.linalg.norm(self.velocity, axis=2).max(axis=1)
+        return greatest
+
+    @property
+    def drift(self) -> Real:
+        """(runs,) speed of the formation's centre, m/s."""
+        centre: Real = np.linalg.norm(self.velocity.mean(axis=1), axis=1)
+        return centre
 
     @property
     def diverged(self) -> NDArray[np.bool_]:
@@ -59,6 +71,7 @@ def flow(
     horizon: float,
     near: Callable[[Real], NDArray[np.bool_]],
     tolerance: float = 1e-7,
+    smallest: float = SMALLEST_STEP,
     rest: float = 1e-5,
     on_progress: Callable[[float], None] | None = None,
 ) -> Flow:
@@ -70,12 +83,13 @@ def flow(
         horizon: seconds.
         near: whether points (r, n, 2) are at the goal.
         tolerance: metres of error in one step.
+        smallest: step, seconds; see :data:`SMALLEST_STEP`.
         rest: m/s; a run whose agents are all slower stands.
         on_progress: called with the share of the work that is done, between 0 and 1.
     """
     points = np.array(start, dtype=np.float64)
     runs = len(points)
-    time, step = np.zeros(runs), np.full(runs, FIRST_STEP)
+    time, step = np.zeros(runs), np.full(runs, max(FIRST_STEP, smallest))
     left_goal = np.where(near(points), -1.0, 0.0)
     slope = velocity(points, np.arange(runs))
     live = np.arange(runs)
@@ -87,9 +101,9 @@ def flow(
         k4 = velocity(new, live)
         error = np.abs(h * (-5.0 * k1 + 6.0 * k2 + 8.0 * k3 - 9.0 * k4) / 72.0).max(axis=(1, 2))
         h = h[:, 0, 0]
-        taken = ~(error > tolerance) | (h <= SMALLEST_STEP)
+        taken = ~(error > tolerance) | (h <= smallest)
         growth = SAFETY * np.cbrt(tolerance / np.maximum(error, 1e-30))
-        step[live] = np.clip(h * np.clip(growth, LEAST_GROWTH, MOST_GROWTH), SMALLEST_STEP, LARGEST_STEP)
+        step[live] = np.clip(h * np.clip(growth, LEAST_GROWTH, MOST_GROWTH), smallest, LARGEST_STEP)
         moved = live[taken]
         points[moved], slope[moved] = new[taken], k4[taken]
         time[moved] += h[taken]
@@ -100,6 +114,5 @@ def flow(
         live = live[~done]
         if on_progress is not None:
             on_progress(1.0 if not live.size else float(np.minimum(time[live] / horizon, 1.0).min()))
-    final = np.linalg.norm(slope, axis=2).max(axis=1)
     settled = np.where(near(points), np.maximum(left_goal, 0.0), np.inf)
-    return Flow(points, final, time, settled)
+    return Flow(points, slope, time, settled)

@@ -82,6 +82,14 @@ def pairs_before(formation: Framework) -> DirectedGraph:
     return DirectedGraph(len(p), np.array(edges))
 
 
+def chain(formation: Framework) -> DirectedGraph:
+    """From agent 2 through 3, 4, ..., n to agent 1: every follower senses the one before it and the one after it."""
+    n = formation.graph.n
+    order = [agents.FIRST_FOLLOWER, *range(agents.FIRST_ORDINARY, n), agents.LEADER]
+    edges = [(k, i) for before, k, after in zip(order, order[1:], order[2:], strict=False) for i in (before, after)]
+    return DirectedGraph(n, np.array(edges))
+
+
 def all_before(formation: Framework) -> DirectedGraph:
     """Every agent senses all agents before it."""
     n = formation.graph.n
@@ -170,7 +178,7 @@ DESIGNS: Mapping[str, Callable[[Framework], DirectedGraph]] = MappingProxyType(
         "leader-first-follower": pairs_before,
         "undirected": both_ways,
         "rooted": pairs_before,
-        "two-rooted": pairs_before,
+        "two-rooted": chain,
         "rigid": both_ways,
         "bearing rigid": both_ways,
         "universally rigid": lateration,

@@ -11,20 +11,45 @@ from scenarios.cli.exits import MISSED
 
 
 @click.command()
+@click.argument("scenario", default="shape")
+@click.option("--law", "names", multiple=True, metavar="NAME", help="Only this law; may be given several times.")
 @click.option("--starts", default=1000, show_default=True, type=click.IntRange(min=1), help="Random starts per law.")
-@options.markdown("Write the table to this file too.")
-def laws(starts: int, markdown: Path | None) -> None:
-    """Compare the angle law with the displacement, bearing and distance laws."""
+@click.option(
+    "--robots", default=0, show_default=True, type=click.IntRange(0, 1000), help="Seeds on each plant with wheels."
+)
+@options.changes
+@options.markdown("Write the page to this file too.")
+@click.option("--figure", type=click.Path(path_type=Path, dir_okay=False), help="Draw starts and ends, a PNG.")
+def laws(
+    scenario: str,
+    names: tuple[str, ...],
+    starts: int,
+    robots: int,
+    changes: tuple[str, ...],
+    markdown: Path | None,
+    figure: Path | None,
+) -> None:
+    """Put the laws of the literature side by side on the target of SCENARIO (a name or a file).
+
+    What each needs, where random starts end, what errors do, and how it fares on robots.
+    """
     from scenarios.storage.files import write_text
-    from scenarios.studies import laws as comparison
+    from scenarios.studies.league.entries import chosen
+    from scenarios.studies.league.measure import league
+    from scenarios.studies.league.report import markdown as page
+    from scenarios.studies.league.report import print_league
     from scenarios.terminal import new_console, progress_bar
 
-    console = new_console()
+    console, entries = new_console(), chosen(names)
     with progress_bar(console, "laws") as advance:
-        shares = comparison.compare(starts, advance)
-    comparison.print_laws(console, shares)
+        rows = league(scenario, changes, entries, starts, robots, advance)
+    print_league(console, rows, robots)
+    if figure is not None:
+        from scenarios.studies.league.picture import draw
+
+        draw(rows, figure)
     if markdown is not None:
-        write_text(markdown, comparison.markdown(shares, starts), "--markdown")
+        write_text(markdown, page(scenario, changes, rows, starts, robots), "--markdown")
 
 
 @click.command()

@@ -14,7 +14,7 @@ from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.definition.own_law import OwnLaw
 from scenarios.definition.schema import Scenario
 from scenarios.documents import markdown_table
-from scenarios.studies.laws import COMPASS_BIAS_DEG, DURATION, RANDOM_START, Progress, part_of, share_reaching
+from scenarios.studies.shares import COMPASS_BIAS_DEG, DURATION, RANDOM_START, Progress, part_of, share_reaching
 from scenarios.terminal import new_table, print_table
 
 COLUMNS = ("check", "verdict", "measured", "remark")

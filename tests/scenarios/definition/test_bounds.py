@@ -13,7 +13,7 @@ from scenarios.definition.bounds import MOST_BYTES, MOST_STARTS, STATE_BYTES
 from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.definition.schema import Scenario
 from scenarios.errors import InputError
-from scenarios.studies.laws import share_reaching
+from scenarios.studies.shares import share_reaching
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from scenarios.definition.experiment import open_experiment
 from scenarios.definition.load import LIBRARY
 from scenarios.simulation.loop import simulate
 from scenarios.studies.audit import audit_scenario, markdown, passed
-from scenarios.studies.laws import share_reaching
+from scenarios.studies.shares import share_reaching
 
 LAW = """
 import numpy as np
