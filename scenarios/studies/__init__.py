@@ -10,8 +10,9 @@ __all__ = [
     "exported",
     "identification",
     "ladder",
-    "laws",
+    "league",
     "project",
     "reproduction",
+    "shares",
     "sweep",
 ]
