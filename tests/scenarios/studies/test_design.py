@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scenarios.measures.forecast import forecast
 
 from scenarios.cli import BAD_INPUT, DONE
 from scenarios.definition.experiment import open_experiment
+from scenarios.measures.predictions.forecast import forecast
 from scenarios.studies.design import answer, ask, write_scenario
 
 Cli = Callable[..., tuple[int, str, str]]
