@@ -35,7 +35,7 @@ quick: $(STAMP) ## the test suite without the Monte Carlo runs
 lowest: ## the quick tests with every dependency at its lower bound, in .venv-lowest
 	$(PYTHON) -m venv $(LOWEST)
 	$(LOWEST)/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt uv
-	$(LOWEST)/bin/uv pip install --quiet --python $(LOWEST) --resolution lowest-direct --editable '.[dev]'
+	$(LOWEST)/bin/uv pip install --quiet --python $(LOWEST) --resolution lowest-direct --config-settings editable_mode=compat --editable '.[dev]'
 	$(LOWEST)/bin/pytest -n auto -m 'not slow'
 
 mutants: $(STAMP) ## how many of 150 small changes of formation/, and of robots/, the tests notice (about an hour)

@@ -24,7 +24,7 @@ from scenarios.simulation.trajectory import Trajectory
 hypothesis.settings.register_profile("project", deadline=None, derandomize=True, max_examples=60)
 hypothesis.settings.load_profile("project")
 
-SHELL = ("sh",)
+SHELL = ("false", "sh", "true")
 """Programs that every machine has, and that a test or a library may start."""
 
 TOOLS = pytest.StashKey[tempfile.TemporaryDirectory[str]]()

@@ -15,8 +15,9 @@ checked against the text).
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from robots.compiled import compiled
 
 Real = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -25,7 +26,7 @@ _STATES = 4
 _DIFFUSE = 1e-2  # variance of the start: columns begin at 0, so that only the first pose's noise is unknown
 
 
-@njit(cache=True)
+@compiled
 def whiten(
     columns: Real, step: Real, speed: Real, known: Flags, slip: Real, noise: Real, jitter: float, memory: float
 ) -> tuple[Real, Real]:

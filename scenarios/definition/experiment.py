@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -183,13 +184,13 @@ class Experiment:
         return self.starts.draw(np.random.default_rng(seed))[0]
 
 
-def open_experiment(scenario: str, changes: tuple[str, ...] = (), duration: float | None = None) -> Experiment:
+def open_experiment(scenario: str | Path, changes: tuple[str, ...] = (), duration: float | None = None) -> Experiment:
     """The experiment of a scenario's name or path, with ``--set`` changes and a shortened or lengthened run.
 
     Raises:
         InputError: anything in the scenario that cannot be used, with file and field.
     """
-    return build(load(scenario, changes), duration)
+    return build(load(str(scenario), changes), duration)
 
 
 def require_safety(experiment: Experiment, safety: str | None) -> None:

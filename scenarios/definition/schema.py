@@ -173,7 +173,7 @@ class PlantTable(Table):
     name: Literal["single_integrator", "unicycle", "saturated", "pymunk"] = "pymunk"
     """From the theorem's points to bodies with mass; `--plant` replaces it."""
     control_period_s: Positive = 0.033
-    """Stretched by less than half a period per phase, so that a whole number of periods fits each phase."""
+    """Stretched or shortened so that a whole number of periods, at least one, fills each phase."""
 
 
 class SensorTable(Table):

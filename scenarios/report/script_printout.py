@@ -66,5 +66,6 @@ def _pose(pose: NDArray[Any]) -> str:
 def _contacts(contacts: dict[str, Any]) -> str:
     if contacts["first"] is None:
         return "none"
-    who = " and ".join(str(robot) for robot in contacts["first"]["robots"])
-    return f"in {contacts['periods']} control periods, first robots {who} at {contacts['first']['time_s']:.2f} s"
+    robots = contacts["first"]["robots"]
+    who = f"{'robot' if len(robots) == 1 else 'robots'} {' and '.join(map(str, robots))}"
+    return f"in {contacts['periods']} control periods, first of {who} at {contacts['first']['time_s']:.2f} s"

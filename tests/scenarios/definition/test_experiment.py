@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from scenarios.definition.experiment import Experiment, open_experiment
-from scenarios.definition.load import library
+from scenarios.definition.load import LIBRARY, library
 from scenarios.errors import InputError
 
 Varied = Callable[..., Experiment]
@@ -89,3 +89,12 @@ def test_a_first_follower_that_moves_needs_its_displacement_in_every_phase(varie
 @pytest.mark.parametrize("name", library())
 def test_every_scenario_of_the_library_opens(name: str) -> None:
     assert open_experiment(name).n >= 3
+
+
+def test_a_scenario_may_be_named_by_a_path_object() -> None:
+    path = LIBRARY / "shape.toml"
+    assert (
+        open_experiment(path).file.sha256
+        == open_experiment(str(path)).file.sha256
+        == open_experiment("shape").file.sha256
+    )
