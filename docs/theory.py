@@ -185,8 +185,8 @@ def _apart(a: float, b: float) -> str:
 
 TAIL = """
 Late rates are slopes of the log distance over one window, from 2 cm of the follower and of all upstream of it down to
-0.1 um, predicted by the same fit to the exact motion from the state at which the window begins, with commands held where
-the plant holds them.
+0.1 um, predicted by the same fit to the exact motion from the state at which the window begins, with commands held
+where the plant holds them.
 """
 
 if __name__ == "__main__":
