@@ -1,10 +1,9 @@
 """Compare our Robotarium interface with the public simulator, ``rps`` 2.1, and run exported scripts on both.
 
     .venv/bin/python docs/against_rps.py --seeds 20
-    .venv/bin/python docs/against_rps.py --examples FOLDER
 
-``rps`` has to be importable (github.com/robotarium/robotarium_python_simulator); FOLDER is the ``rps/examples`` of its
-source. Prints the figures of docs/robotarium.md.
+``rps`` has to be importable (github.com/robotarium/robotarium_python_simulator). Prints the figures of
+docs/robotarium.md; those of its own examples are docs/scripts_on_rps.py's.
 """
 
 import argparse
@@ -14,23 +13,15 @@ import random
 import sys
 import types
 import warnings
-from pathlib import Path
 
 import numpy as np
 import rps.robotarium
-from rps.utilities.misc import generate_random_poses
 
 import robots.robotarium
 from robots import GTERNAL
 from scenarios.definition.experiment import open_experiment
 from scenarios.export.script import script
 
-EXAMPLES = (
-    "go_to_goal/go_to_point_si.py",
-    "go_to_goal/go_to_pose_clf.py",
-    "formation_control/formation_control.py",
-    "leader_follower/leader_follower.py",
-)
 EXPORTED: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("shape", ()),
     ("shape", ("agents.4.start=[0.4, 0.6]",)),
@@ -58,26 +49,6 @@ class Peer(rps.robotarium.Robotarium):
 
     def step(self) -> None:
         if self.initializing and self._iteration == LONGEST:
-            raise StuckError
-        super().step()
-
-
-class Ours(robots.robotarium.Robotarium):
-    """Our simulator, with random poses drawn as the public one draws them."""
-
-    world = "pymunk"
-    made: list["Ours"] = []  # noqa: RUF012
-
-    def __init__(self, number_of_robots: int = -1, initial_conditions: np.ndarray | None = None, **_: object) -> None:
-        self.made.append(self)
-        self.steps = 0
-        if initial_conditions is None:
-            initial_conditions = generate_random_poses(number_of_robots, spacing=0.5, width=2.75, height=1.75)
-        super().__init__(number_of_robots, initial_conditions=initial_conditions, plant=self.world)
-
-    def step(self) -> None:
-        self.steps += 1
-        if self.steps > LONGEST:
             raise StuckError
         super().step()
 
@@ -124,21 +95,6 @@ def difference(a: np.ndarray, b: np.ndarray) -> tuple[float, float]:
     return np.hypot(*(a - b)[:2]).max(), np.abs(np.angle(np.exp(1j * (a[2] - b[2])))).max()
 
 
-def compare_examples(folder: Path) -> None:
-    """Where the public simulator's own examples end on both."""
-    for example in EXAMPLES:
-        text = (folder / example).read_text(encoding="utf-8")
-        _, peer = execute(text, Peer, 0)
-        for Ours.world in ("saturated", "pymunk"):
-            with contextlib.suppress(StuckError):
-                execute(text, Ours, 0)
-            ours = Ours.made[-1]
-            t, poses, _ = ours.recorded()
-            apart, turned = difference(peer._poses, poses[-1].T)
-            steps = f"{peer._iteration} and {len(t) - 1} steps{', stuck' if len(t) > LONGEST else ''}"
-            print(f"{example}, {Ours.world}: {apart:.1e} m, {turned:.1e} rad, {steps}")
-
-
 def run_exported(scenario: str, changes: tuple[str, ...], seeds: int) -> None:
     """Exported scripts of heading seeds 0 .. seeds - 1 on the public simulator."""
     errors, accepted, stuck = [], 0, 0
@@ -163,16 +119,12 @@ def run_exported(scenario: str, changes: tuple[str, ...], seeds: int) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--seeds", type=int, default=20)
-    parser.add_argument("--examples", type=Path)
     given = parser.parse_args()
     Peer.skip = True
-    if given.examples is not None:
-        compare_examples(given.examples)
-    else:
-        compare_steps()
-        Peer.skip = False
-        for scenario, changes in EXPORTED:
-            run_exported(scenario, changes, given.seeds)
+    compare_steps()
+    Peer.skip = False
+    for scenario, changes in EXPORTED:
+        run_exported(scenario, changes, given.seeds)
 
 
 if __name__ == "__main__":

@@ -51,6 +51,8 @@ def run(
     from scenarios.storage import again
     from scenarios.terminal import new_console
 
+    if scenario.endswith(".py"):
+        raise InputError(f"{scenario}: a script, not a scenario; expected `formation script {scenario}`")
     changes = options.changed(changes, plant, safety)
     if again.is_recorded(scenario):
         experiment, seed_before = again.open_again(scenario, changes, duration)

@@ -131,6 +131,35 @@ def test_files_that_are_not_there_and_options_that_cannot_be_are_refused(cli: Cl
         assert words in err
 
 
+def test_run_points_to_where_scripts_run(cli: Cli) -> None:
+    code, _, err = cli("run", "consensus.py")
+    assert (code, err) == (
+        2,
+        "formation: consensus.py: a script, not a scenario; expected `formation script consensus.py`\n",
+    )
+
+
+def test_a_viewer_gets_the_robots_as_they_go(tmp_path: Path) -> None:
+    import rerun as rr
+    from rerun.chunk import RrdReader
+
+    from robots.rps.version2.robotarium import Robotarium
+    from scenarios.recording.script_live import ScriptView
+    from scenarios.simulation.script.script_file import read
+
+    (tmp_path / "mine.py").write_text(HEAD)
+    view = ScriptView(read(tmp_path / "mine.py"), "saturated", 0, rr.FileSink(str(tmp_path / "seen.rrd")))
+    robots = Robotarium(number_of_robots=2, plant="saturated", seed=0)
+    view.begin(robots)
+    for _ in range(3):
+        robots.get_poses()
+        robots.step()
+        view.look(robots)
+    assert view.finish()
+    entities = {str(chunk.entity_path) for chunk in RrdReader(str(tmp_path / "seen.rrd")).stream()}
+    assert {"/arena/world/robots/0", "/arena/world/robots/1", "/wheels/value"} <= entities
+
+
 def test_a_script_gets_its_arguments_and_the_seed(run: Callable, tmp_path: Path) -> None:
     lines = "import sys, random\ngo(1)\nprint(sys.argv, __name__, np.random.rand(), random.random())\n"
     state = np.random.get_state()[1].tolist()  # noqa: NPY002
