@@ -35,8 +35,8 @@ class Sheet:
 def interval(reached: int, runs: int) -> tuple[float, float]:
     """Wilson's 95 % interval of a share.
 
-    >>> interval(0, 1000)[0], round(interval(0, 1000)[1], 4)
-    (0.0, 0.0038)
+    >>> [round(bound, 4) for bound in interval(0, 1000)]
+    [0.0, 0.0038]
     """
     share, spread = reached / runs, NORMAL**2 / runs
     middle = (share + spread / 2.0) / (1.0 + spread)

@@ -14,7 +14,8 @@ from PIL import Image
 
 from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.errors import InputError
-from scenarios.figures import animate, encode
+from scenarios.figures import animate
+from scenarios.figures.films import encode
 from scenarios.figures.films.film import Film, frame_rows
 from scenarios.figures.palette import agent_colour, rgb
 from scenarios.figures.style import print_style

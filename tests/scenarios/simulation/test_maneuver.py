@@ -92,7 +92,7 @@ def test_tracking_vanishes_on_the_reference_itself_and_sees_each_deviation_alone
 
 def test_maneuver_reports_when_where_and_who_leaves_the_testbed(maneuver) -> None:
     experiment, trajectory, metrics = maneuver
-    [floor] = [v for v in metrics.verdict.violations if v.kind == "floor"]
+    [floor] = [v.first for v in metrics.verdict.violations if v.kind == "floor"]
     row = int(np.flatnonzero(trajectory.t == floor.time)[0])
     assert experiment.arena.contains(trajectory.poses[:row, :, :2]).all()
     [robot] = floor.robots

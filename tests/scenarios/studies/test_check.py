@@ -150,6 +150,7 @@ def test_a_thousandth_of_a_radian_is_reported_as_the_worst_angle_with_a_run_fold
     own: Path, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     off_by_a_thousandth(own, monkeypatch)
+    monkeypatch.setenv("COLUMNS", "200")
     code, out, _ = run(*CHECK)
     assert code == 1
     misses = [line for line in out[out.index("Missed") :].splitlines() if "final_rad" in line]

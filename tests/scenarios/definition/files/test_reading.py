@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.definition.files import law_file, load
+from scenarios.definition import load
+from scenarios.definition.files import law_file
 from scenarios.definition.files.reading import read_json, read_regular
 from scenarios.errors import InputError
 from scenarios.studies.check import baseline
