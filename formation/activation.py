@@ -23,8 +23,14 @@ class SequentialActivation:
         active: (..., n) which agents may move now. The leader and the first follower always may.
     """
 
-    def __init__(self, target: TargetFormation, tolerance: float, batch: tuple[int, ...] = ()) -> None:
-        self._rates = decay_rates(target)
+    def __init__(
+        self,
+        target: TargetFormation,
+        tolerance: float,
+        batch: tuple[int, ...] = (),
+        own_gains: Real | None = None,
+    ) -> None:
+        self._rates = decay_rates(target) if own_gains is None else decay_rates(target) * own_gains
         self._i, self._j = target.graph.neighbours.T
         self._tolerance = tolerance
         self._settled = np.zeros((*batch, target.graph.n), dtype=bool)

@@ -22,7 +22,7 @@ class AngleLaw(Law):
     """The law of all agents at once.
 
     Attributes:
-        gains: (n - 2, 2) the factors -A_k^T A_i and -A_k^T A_j as complex numbers, 1/s.
+        gains: (n - 2, 2) the factors -A_k^T A_i and -A_k^T A_j as complex numbers, 1/s, times each follower's own gain.
         needs_compass: whether an agent needs the common x axis in its own frame.
 
     Raises:
@@ -34,10 +34,12 @@ class AngleLaw(Law):
     needs_handedness = True
     leaders = 2
 
-    def __init__(self, target: TargetFormation, first_follower: str = "stationary") -> None:
+    def __init__(
+        self, target: TargetFormation, first_follower: str = "stationary", own_gains: Real | None = None
+    ) -> None:
         if first_follower not in EDGE_LAWS:
             raise ValueError(f"first_follower must be one of {', '.join(EDGE_LAWS)}, got {first_follower!r}")
-        self.gains = follower_gains(target)
+        self.gains = follower_gains(target) if own_gains is None else follower_gains(target) * own_gains[:, None]
         self.needs_compass = first_follower not in COMPASS_FREE
         self._stationary = first_follower == "stationary"
         self._first_follower = EDGE_LAWS[first_follower]

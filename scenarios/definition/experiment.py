@@ -39,6 +39,7 @@ from scenarios.definition.load import ScenarioFile, load
 from scenarios.definition.own_law import NotLoaded, OwnFactory, check_parameters
 from scenarios.definition.schema import LawTable, Scenario
 from scenarios.definition.starts import Starts, build_starts
+from scenarios.definition.targets import in_order
 from scenarios.errors import InputError, located
 
 Real = NDArray[np.float64]
@@ -63,6 +64,7 @@ class Experiment:
         starts: the initial state, as far as the scenario fixes it.
         phases: the maneuver, a single phase for shape control.
         law: the formation law.
+        own_gains: (n - 2,) gain of each follower of the angle law on top of eq. (u); None where all are 1.
         estimator: how agents learn v_r; None where it is broadcast.
         measured: the robots as logs and firmware show them; None for the data sheet's.
         asked_duration: seconds that replaced the scenario's own; None where none did.
@@ -74,6 +76,7 @@ class Experiment:
     starts: Starts
     phases: tuple[Phase, ...]
     law: FormationLaw
+    own_gains: Real | None
     estimator: VelocityEstimator | None
     instruments: Instruments
     nid: NearIdentityDiffeomorphism
@@ -229,7 +232,8 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
         _check_rates(path, aim.target, scenario.plant.control_period_s)
     arena = _arena(path, scenario)
     phases = _phases(path, scenario, aim.formation, duration)
-    law, aim = _law(file, aim, phases, to_run)
+    own_gains = _own_gains(path, scenario, aim)
+    law, aim = _law(file, aim, phases, to_run, own_gains)
     if scenario.law.activation == "sequential" and aim.formation is not aim.target:
         raise InputError(f"{path}: law.activation: 'sequential' needs a leader-first-follower graph")
     return Experiment(
@@ -239,6 +243,7 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
         starts=build_starts(path, scenario, aim.formation, arena),
         phases=phases,
         law=law,
+        own_gains=own_gains,
         estimator=_estimator(path, scenario, aim.formation.graph),
         instruments=_instruments(path, scenario, law, aim.formation.graph),
         nid=nid,
@@ -285,11 +290,13 @@ def _filter_settings(path: str, scenario: Scenario) -> FilterSettings:
         )
 
 
-def _law(file: ScenarioFile, aim: Aim, phases: tuple[Phase, ...], to_run: bool) -> tuple[FormationLaw, Aim]:
+def _law(
+    file: ScenarioFile, aim: Aim, phases: tuple[Phase, ...], to_run: bool, own_gains: Real | None
+) -> tuple[FormationLaw, Aim]:
     """The law, and the aim with the graph that it is made for, which an own law's file may decide."""
     table = file.scenario.law
     if table.name != "own":
-        return _built_in(file.path, table, aim), aim
+        return _built_in(file.path, table, aim, own_gains), aim
     if not to_run or file.law is None or table.factory is None:
         return NotLoaded(), aim
     factory = OwnFactory(file.path, file.law, table.factory, table.parameters)
@@ -297,14 +304,38 @@ def _law(file: ScenarioFile, aim: Aim, phases: tuple[Phase, ...], to_run: bool) 
     return factory.make(aim.formation, phases[0].delta), aim
 
 
-def _built_in(path: str, table: LawTable, aim: Aim) -> FormationLaw:
+def _built_in(path: str, table: LawTable, aim: Aim, own_gains: Real | None) -> FormationLaw:
     if isinstance(aim.formation, TargetFormation) and table.name == "angle":
         check_parameters(path, "the angle law", lambda target: None, table.parameters)
-        return AngleLaw(aim.formation, table.first_follower)
+        return AngleLaw(aim.formation, table.first_follower, own_gains)
     make = LAWS[table.name]
     check_parameters(path, f"the {table.name} law", make, table.parameters)
     with located(path, "law"):
         return make(aim.formation, **table.parameters)
+
+
+def _own_gains(path: str, scenario: Scenario, aim: Aim) -> Real | None:
+    """(n - 2,) the gain of each follower on top of eq. (u); None where all are 1, and for other laws.
+
+    Raises:
+        InputError: a gain for an agent that has none, or for a law that has none.
+    """
+    given = [agent for agent in in_order(scenario.agents) if agent.gain is not None]
+    if scenario.law.name != "angle" or not isinstance(aim.formation, TargetFormation):
+        if given or scenario.law.gain != "paper":
+            field = "law.gain" if not given else f"agents[id {given[0].id}].gain"
+            raise InputError(f"{path}: {field}: only for the angle law")
+        return None
+    for agent in given:
+        if agents.rows(agent.id) < agents.FIRST_ORDINARY:
+            raise InputError(f"{path}: agents[id {agent.id}].gain: leader and first follower have none")
+    if not given and scenario.law.gain == "paper":
+        return None
+    rates = decay_rates(aim.formation)
+    gains = np.ones(len(rates)) if scenario.law.gain == "paper" else 1.0 / rates
+    for agent in given:
+        gains[agents.rows(agent.id) - agents.FIRST_ORDINARY] = agent.gain
+    return gains
 
 
 def _estimator(path: str, scenario: Scenario, graph: Graph) -> VelocityEstimator | None:

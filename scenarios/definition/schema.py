@@ -51,6 +51,9 @@ class AgentTable(Table):
     """Initial position of its projected point, m."""
     heading_deg: Number | None = None
     """Initial heading; drawn from the run's seed where absent."""
+    gain: Positive | None = None
+    """Of a follower of the angle law, on top of eq. (u): it decays at gain times sin^2 of its angle, 1/s; as `law.gain`
+    says where absent."""
     target: Vector | None = None
     """Its place in one configuration that has the desired shape, m; given for all agents, or for none and then the
     shape is defined by `target.angles_deg`."""
@@ -108,6 +111,9 @@ class LawTable(Table):
     executed."""
     first_follower: Literal["stationary", "displacement", "distance", "bearing"] = "stationary"
     """What the first follower of the angle law does with the phases' displacement."""
+    gain: Literal["paper", "normalised"] = "paper"
+    """Of all followers of the angle law: 1, eq. (u) as the paper has it, or 1 / sin^2, which makes all rates 1 per
+    second; `show` tells its price in noise."""
     activation: Literal["simultaneous", "sequential"] = "simultaneous"
     """Whether each follower waits until its neighbours have settled (Lemma 3)."""
     settled_m: Positive = 0.005

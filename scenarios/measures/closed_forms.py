@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from formation import agents
+from formation import agents, decay_rates
 from formation.analysis.amplification import dwell_errors, peak_gains, transient_gain
 from formation.analysis.cascade import Cascade
 from formation.analysis.collisions import crossed_sight_lines, neighbour_clearance, others_clearance, settled_within
@@ -39,6 +39,7 @@ class ClosedForms:
     Attributes:
         loop: the closed loop.
         noise: (n,) rms error of each agent, metres; of a centimetre in each coordinate if the scenario has no noise.
+        paper_noise: (n,) the same if every follower's own gain were 1.
         assumed: whether that is so.
         bias: (n,) metres of offset for a metre of independent constant errors.
         growth: the largest norm of e^{Mt}, and when, seconds; None for many agents.
@@ -56,6 +57,7 @@ class ClosedForms:
 
     loop: Cascade
     noise: Real
+    paper_noise: Real
     assumed: bool
     bias: Real
     growth: tuple[float, float] | None
@@ -116,6 +118,7 @@ def closed_forms(experiment: Experiment, start: Real) -> ClosedForms | None:
     return ClosedForms(
         loop=loop,
         noise=noise_rms(loop, period, power),
+        paper_noise=noise_rms(replace(loop, rates=_paper_rates(experiment, loop)), period, power),
         assumed=assumed,
         bias=bias_gains(loop),
         growth=transient_gain(loop) if few else None,
@@ -145,6 +148,11 @@ def passages(experiment: Experiment, start: Real) -> Passages | None:
         nearest=nearest,
         crossings=crossed_sight_lines(target, start, end),
     )
+
+
+def _paper_rates(experiment: Experiment, loop: Cascade) -> Real:
+    """(n - 1,) the rates without the followers' own gains, 1/s."""
+    return np.concatenate([loop.rates[:1], decay_rates(experiment.target)])
 
 
 def _first_velocity(loop: Cascade, start: Real, experiment: Experiment) -> NDArray[np.complex128]:

@@ -51,6 +51,12 @@ def _ways(experiment: Experiment, near: Passages, follower: int) -> list[str]:
 
 def _sentences(experiment: Experiment, found: ClosedForms) -> list[str]:
     told = [f"{_noise(experiment, found)}; bias gain: offset over independent constant errors of all measurements."]
+    if experiment.own_gains is not None:
+        told.append(
+            f"Own gains from {experiment.own_gains.min():.3g} to {experiment.own_gains.max():.3g}: the slowest "
+            f"follower at {found.loop.rates[1:].min():.3g} 1/s; the noisiest has {1e3 * found.noise.max():.2f} mm, "
+            f"with gains of 1 {1e3 * found.paper_noise.max():.2f} mm."
+        )
     if found.last_over_first > AMPLIFIES:
         told.append(
             f"A long cascade amplifies: depth {experiment.target.graph.depth.max()}, the noisiest follower has "

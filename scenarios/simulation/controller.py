@@ -49,7 +49,9 @@ class Controller:
         self._activation = None
         self.active = np.ones((*batch, experiment.n), dtype=bool)
         if scenario.law.activation == "sequential":
-            self._activation = SequentialActivation(experiment.target, scenario.law.settled_m, batch)
+            self._activation = SequentialActivation(
+                experiment.target, scenario.law.settled_m, batch, experiment.own_gains
+            )
             self.active = self._activation.active
         if self._estimator is not None:
             self._velocity = np.zeros((*batch, experiment.n, 2))

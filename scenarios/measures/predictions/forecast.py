@@ -54,7 +54,7 @@ def forecast(experiment: Experiment, start: Real) -> list[PhaseForecast]:
             forecasts.append(PhaseForecast(end, None, None, None))
             continue
         steps = int(np.ceil(phase.duration / STEP))
-        loop, first = Cascade.of(experiment.target), experiment.first_follower
+        loop, first = Cascade.of(experiment.target, gains=experiment.own_gains), experiment.first_follower
         arrived = arrival(_errors(loop, as_complex(here), phase, first, as_complex(end)), loop.reach, NEAR, STEP)
         here = points(ideal(loop, as_complex(here), phase, first, phase.duration / steps), steps)[-1]
         error_sum = float(np.abs(experiment.angles.errors(here, experiment.target_angles)).sum())

@@ -28,7 +28,8 @@ def _slow(experiment: Experiment) -> Iterator[str]:
     """Followers whose own rate, sin^2 of the follower angle (Theorem 1), leaves them no time in the whole run."""
     if experiment.scenario.law.name != "angle":
         return
-    rates, seconds = decay_rates(experiment.target), sum(phase.duration for phase in experiment.phases)
+    gains = 1.0 if experiment.own_gains is None else experiment.own_gains
+    rates, seconds = decay_rates(experiment.target) * gains, sum(phase.duration for phase in experiment.phases)
     exponents = rates * seconds
     slow = np.flatnonzero(exponents < LEAST_EXPONENT)
     slow = slow[np.argsort(rates[slow], kind="stable")]

@@ -38,7 +38,8 @@ def cascade(experiment: Experiment, start: Real, index: int) -> Cascade:
     """The closed loop near the end of a phase that begins with agents at ``start`` (n, 2), metres."""
     leader, first = as_complex(start)[: agents.FIRST_ORDINARY]
     delta = experiment.phases[index].displacement
-    return Cascade.of(experiment.target, first_follower.rate(experiment.first_follower, first - leader, delta))
+    rate = first_follower.rate(experiment.first_follower, first - leader, delta)
+    return Cascade.of(experiment.target, rate, experiment.own_gains)
 
 
 def motion(experiment: Experiment, start: Real, index: int) -> Real:
@@ -53,5 +54,5 @@ def states(experiment: Experiment, start: Complex, index: int, period: float) ->
     Commands are held over a period where the plant holds them; neither wheels nor a filter change them.
     """
     move = ideal if experiment.plant == "single_integrator" else held
-    loop = Cascade.of(experiment.target)
+    loop = Cascade.of(experiment.target, gains=experiment.own_gains)
     return move(loop, start, experiment.phases[index], experiment.first_follower, period)

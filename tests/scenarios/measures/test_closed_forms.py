@@ -7,8 +7,11 @@ import pytest
 from rich.console import Console
 
 from scenarios.definition.experiment import Experiment, open_experiment
+from scenarios.errors import InputError
 from scenarios.measures.closed_forms import closed_forms, passages
+from scenarios.measures.predictions.theory import motion
 from scenarios.report.closed_forms import print_closed_forms
+from scenarios.simulation.loop import simulate
 
 
 def shown(experiment: Experiment) -> str:
@@ -73,3 +76,26 @@ def test_ways_are_told_where_agents_1_and_2_stand_and_nowhere_else(shape: Experi
 
 def test_other_laws_have_no_closed_forms() -> None:
     assert shown(open_experiment("law-distance")) == ""
+
+
+def test_normalised_gains_make_all_rates_one_at_a_price_in_noise(varied: Callable[..., Experiment]) -> None:
+    even = varied("law.gain=normalised", "plant.name=single_integrator")
+    found = closed_forms(even, even.initial_points(0))
+    assert found is not None
+    np.testing.assert_allclose(found.loop.rates[1:], 1.0)
+    assert 1e3 * found.noise.max() == pytest.approx(3.58, abs=0.01)
+    assert 1e3 * found.paper_noise.max() == pytest.approx(2.915, abs=0.001)
+    assert "with gains of 1 2.91 mm" in shown(even)
+    run = simulate(even, 0)
+    np.testing.assert_allclose(motion(even, run.points[0], 0), run.points, atol=1e-6)
+
+
+def test_a_follower_may_have_its_own_gain_and_agents_1_and_2_have_none(varied: Callable[..., Experiment]) -> None:
+    own = varied("agents.3.gain=1.5")
+    found = closed_forms(own, own.initial_points(0))
+    assert found is not None
+    np.testing.assert_allclose(found.loop.rates[1:], [0.75, 1.0, 0.64, 0.64])
+    with pytest.raises(InputError, match="leader and first follower have none"):
+        varied("agents.2.gain=1.5")
+    with pytest.raises(InputError, match=r"law\.gain: only for the angle law"):
+        open_experiment("law-distance", ("law.gain=normalised",))
