@@ -151,14 +151,14 @@ def strip(n: int) -> TargetFormation:
 
 
 def _last_stable() -> int:
-    """The largest delay, control periods, at which the late envelope of the error decays."""
-    low, high = 30, 60
+    """The largest delay, control periods, at which the late envelope of a small error decays."""
+    low, high, shape = 30, 60, open_experiment("shape")
+    end = end_configuration(shape.target, *shape.initial_points(0)[:2])
+    near = [f"agents.{row + 1}.start={(end[row] + 1e-4).tolist()}" for row in range(2, 6)]
     while high - low > 1:
         middle = (low + high) // 2
-        keys = ("plant.name=unicycle", "sensor.own_motion=turn", f"sensor.delay_periods={middle}", *LITERAL)
-        experiment = open_experiment("shape", keys, duration=200.0)
-        run = simulate(experiment, 0)
-        end = end_configuration(experiment.target, *experiment.initial_points(0)[:2])
+        keys = ("plant.name=unicycle", "sensor.own_motion=turn", f"sensor.delay_periods={middle}", *LITERAL, *near)
+        run = simulate(open_experiment("shape", keys, duration=200.0), 0)
         error = np.linalg.norm(run.points - end, axis=-1).max(axis=1)
         thirds = error[len(error) // 3 : 2 * len(error) // 3].max(), error[2 * len(error) // 3 :].max()
         low, high = (middle, high) if thirds[1] < thirds[0] else (low, middle)
