@@ -95,11 +95,11 @@ def test_an_unchanged_scenario_is_as_before_bit_for_bit(own: Path, run: Run) -> 
 
 
 def off_by_a_thousandth(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def tilted(target: TargetFormation, first_follower: str) -> AngleLaw:
+    def tilted(target: TargetFormation, first_follower: str, own_gains: np.ndarray | None) -> AngleLaw:
         positions = target.positions.copy()
         turn = np.array([[math.cos(1e-3), -math.sin(1e-3)], [math.sin(1e-3), math.cos(1e-3)]])
         positions[5] = positions[3] + turn @ (positions[5] - positions[3])  # alpha(4;1,6) grows by 0.001 rad
-        return AngleLaw(TargetFormation(target.graph, positions), first_follower)
+        return AngleLaw(TargetFormation(target.graph, positions), first_follower, own_gains)
 
     monkeypatch.setattr(scenarios.definition.experiment, "AngleLaw", tilted)
 
