@@ -39,16 +39,21 @@ def follow(cascade: Cascade, start: Complex, first: Motion, step: float) -> Iter
         first: e_12(t) (...), the displacement of agent 2 from agent 1.
         step: seconds.
     """
-    stretches: dict[int, _Stretch] = {}
+    stretches: dict[int, _Stretch] = {}  # by how often the step is halved
     q = start - start[agents.LEADER]
     for index in count(1):
         yield q
         begin, state = step * (index - 1), q[ROW:]
-        parts = int(np.ceil(step / min(LONGEST_STEP, first.nearest(begin))))
-        if parts not in stretches:
-            stretches[parts] = _Stretch.over(cascade, step / parts)
-        for part in range(parts):
-            state = stretches[parts].advance(state, first, begin + part * step / parts)
+        done = 0.0  # share of the step; sums of halves are exact
+        while done < 1.0:
+            longest = min(LONGEST_STEP, first.nearest(begin + done * step))
+            halvings = max(0, int(np.ceil(np.log2(step / longest))))
+            while done + 0.5**halvings > 1.0:
+                halvings += 1
+            if halvings not in stretches:
+                stretches[halvings] = _Stretch.over(cascade, step * 0.5**halvings)
+            state = stretches[halvings].advance(state, first, begin + done * step)
+            done += 0.5**halvings
         q = np.empty_like(q)
         q[agents.LEADER], q[agents.FIRST_FOLLOWER], q[ROW:] = 0.0, first.at(np.asarray(step * index)), state
 

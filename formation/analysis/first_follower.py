@@ -19,6 +19,9 @@ import numpy as np
 
 from formation.plane import Complex, Real
 
+SETTLED = 45.0
+"""Times of decay after which nothing that moves is left of e_12: e^-45 is below rounding."""
+
 
 @dataclass(frozen=True)
 class Motion:
@@ -56,7 +59,11 @@ def motion(law: str, start: Complex, delta: complex | None) -> Motion:
         share = length**2 / wanted
         return Motion(
             lambda t: start / np.sqrt(share - (share - 1.0) * np.exp(-2.0 * wanted * t)),
-            lambda t: min(np.pi / (2.0 * wanted), t + (1.0 / (2.0 * far) if far else np.inf)),
+            lambda t: (
+                np.inf
+                if t > SETTLED / (2.0 * wanted)
+                else min(np.pi / (2.0 * wanted), t + (1.0 / (2.0 * far) if far else np.inf))
+            ),
         )
     half = np.angle(start / delta) / 2.0
     direction = length * delta / abs(delta)
@@ -65,7 +72,8 @@ def motion(law: str, start: Complex, delta: complex | None) -> Motion:
         x = np.cos(half) + 1j * np.sin(half) * np.exp(-t / length)
         return direction * (x / np.abs(x)) ** 2
 
-    return Motion(turning, lambda t: np.pi / 2.0 * float(length.min()))
+    slowest, fastest = float(length.max()), float(length.min())
+    return Motion(turning, lambda t: np.inf if t > SETTLED * slowest else np.pi / 2.0 * fastest)
 
 
 def rate(law: str, start: complex, delta: complex | None) -> float:

@@ -27,6 +27,9 @@ FIT_NEAR, FIT_FAR = 1e-7, 2e-2
 FIT_ROWS = 20
 """Fewest recorded states that a rate is fitted to."""
 
+HORIZON = 1800.0
+"""Seconds of a phase that are looked at before a run; by then all that settles has."""
+
 LAUNCHES = 64
 """Instants from which the exact motion is computed: each serves the followers whose windows begin until the next."""
 
@@ -44,6 +47,7 @@ def measured_late_rates(experiment: Experiment, trajectory: Trajectory) -> list[
     return [_rate(t, distance, window) for distance, window in _windows(experiment, points, places)]
 
 
+@np.errstate(over="ignore", invalid="ignore")  # held commands of a law that is too fast for them grow beyond numbers
 def predicted_late_rates(experiment: Experiment, trajectory: Trajectory) -> list[float | None] | None:
     """What the theory says of the same windows: the fit to the exact motion from the state at which each begins.
 
@@ -79,15 +83,16 @@ def predicted_late_rates(experiment: Experiment, trajectory: Trajectory) -> list
     return rates
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def expected_late_rates(experiment: Experiment, start: Real) -> list[float | None] | None:
     """What the theory says before a run from ``start`` (n, 2), metres, of ideal agents; None but for the angle law."""
     if not has_closed_loop(experiment):
         return None
-    for index in range(len(experiment.phases)):
-        points = motion(experiment, start, index)
-        start = points[-1]
-    phase = experiment.phases[-1]
-    t = np.linspace(0.0, phase.duration, len(points))
+    for index, phase in enumerate(experiment.phases):
+        points = motion(experiment, start, index, HORIZON)
+        duration = min(phase.duration, HORIZON)
+        start = points[-1] + (phase.duration - duration) * np.array(phase.velocity)
+    t = np.linspace(0.0, duration, len(points))
     places = _places(experiment, t, points, phase.velocity)
     if places is None:
         return _nothing(experiment)

@@ -53,7 +53,7 @@ def forecast(experiment: Experiment, start: Real) -> list[PhaseForecast]:
         if here is None:
             forecasts.append(PhaseForecast(end, None, None, None))
             continue
-        steps = int(np.ceil(phase.duration / STEP))
+        steps = int(np.ceil(phase.duration / (2.0 * STEP)))
         loop, first = Cascade.of(experiment.target, gains=experiment.own_gains), experiment.first_follower
         arrived = arrival(_errors(loop, as_complex(here), phase, first, as_complex(end)), loop.reach, NEAR, STEP)
         here = points(ideal(loop, as_complex(here), phase, first, phase.duration / steps), steps)[-1]

@@ -42,10 +42,13 @@ def cascade(experiment: Experiment, start: Real, index: int) -> Cascade:
     return Cascade.of(experiment.target, rate, experiment.own_gains)
 
 
-def motion(experiment: Experiment, start: Real, index: int) -> Real:
-    """(T, n, 2) where a phase takes the agents from ``start`` (n, 2), metres, at its start and after every period."""
+def motion(experiment: Experiment, start: Real, index: int, horizon: float = np.inf) -> Real:
+    """(T, n, 2) where a phase takes the agents from ``start`` (n, 2), metres, at its start and after every period.
+
+    Of the phase's first ``horizon`` seconds at most.
+    """
     count, period = periods(experiment.phases[index], experiment.scenario.plant.control_period_s)
-    return points(states(experiment, as_complex(start), index, period), count)
+    return points(states(experiment, as_complex(start), index, period), int(min(count, horizon / period)))
 
 
 def states(experiment: Experiment, start: Complex, index: int, period: float) -> Iterator[Complex]:

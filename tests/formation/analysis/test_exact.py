@@ -111,6 +111,21 @@ def test_a_first_follower_from_afar_by_distance_is_followed_exactly() -> None:
     np.testing.assert_allclose(exact, fine, atol=1e-9)
 
 
+def test_a_first_follower_far_too_fast_for_the_step_is_followed_in_no_time() -> None:
+    """It is where it belongs after a picosecond; the followers then see a pair that stands."""
+    rng = np.random.default_rng(9)
+    target = random_target(5, rng)
+    start = rng.normal(size=(5, 2))
+    fast = Phase("p", 1.0, delta=(1e6, 0.0))
+    moved = as_complex(points(ideal(Cascade.of(target), as_complex(start), fast, "distance", 0.05), 4))
+    moved = moved - moved[:, :1]
+    settled = first_follower.motion("distance", moved[0, 1], 1e6 + 0j).at(np.array(1.0))
+    standing = as_complex(start) - as_complex(start)[0]
+    standing[1] = settled
+    expected = Cascade.of(target).exponential(0.2) @ standing
+    np.testing.assert_allclose(moved[-1], expected, rtol=1e-9)
+
+
 def test_many_motions_at_once_are_the_single_ones() -> None:
     rng = np.random.default_rng(6)
     target = random_target(6, rng)
