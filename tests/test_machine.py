@@ -66,3 +66,16 @@ def test_a_folder_of_the_users_that_is_called_robots_does_not_hide_the_package(t
     script.write_text("from robots import GTERNAL\nimport scenarios.one_run\nprint(GTERNAL.drive.base_length)\n")
     done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, cwd=tmp_path)
     assert (done.stdout, done.stderr) == ("0.11\n", "")
+
+
+def test_without_a_home_a_run_with_its_figures_says_nothing_on_the_side(tmp_path: Path) -> None:
+    nowhere = {name: value for name, value in os.environ.items() if not name.startswith(("XDG_", "MPL"))}
+    command = [sys.executable, "-m", "scenarios", "run", "shape", "--plant", "saturated", "--safety", "none"]
+    done = subprocess.run(
+        [*command, "--duration", "0.5", "--no-recording", "--out", str(tmp_path / "run")],
+        capture_output=True,
+        text=True,
+        env=nowhere | {"HOME": "/proc/nowhere"},
+    )
+    assert (done.returncode, done.stderr) == (1, "")
+    assert (tmp_path / "run" / "figure-motion.png").is_file()

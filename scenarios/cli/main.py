@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import io
+import logging
 import os
 import sys
 from collections.abc import Iterator
@@ -58,6 +59,7 @@ def main() -> None:
     """Run the command line: errors on one line on stderr, never a traceback for bad input."""
     gc.set_threshold(50_000, 20, 50)  # loading packages makes objects and frees none: searching them costs 0.2 s a run
     _show_what_the_terminal_can()
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # not that its folder is a temporary one
     try:
         with _written_whole():
             cli.main(standalone_mode=False)
