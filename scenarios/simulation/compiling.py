@@ -12,6 +12,9 @@ from robots.model import COLLISION_CENTRE, CONTROL_PERIOD
 from robots.safety import FilterSettings, make_filter
 from scenarios.definition.schema import Scenario
 
+ANNOUNCEMENT = "formation: compiling, once"
+"""What stands on stderr before."""
+
 
 def compile_filter(name: str = "decentralised") -> None:
     """Compile the filter ``name`` where no machine code of it is at hand; others have nothing to compile.
@@ -25,7 +28,7 @@ def compile_filter(name: str = "decentralised") -> None:
 
     if at_hand(kernel.step):
         return
-    print("formation: compiling, once", file=sys.stderr, flush=True)
+    print(ANNOUNCEMENT, file=sys.stderr, flush=True)
     still = np.zeros((1, 2))
     ahead = np.array([[1.0, 0.0]])
     nid = NearIdentityDiffeomorphism(COLLISION_CENTRE)

@@ -16,6 +16,7 @@ from types import FrameType
 from unittest import mock
 
 from scenarios.cli import BAD_INPUT, DONE, MISSED, main
+from scenarios.simulation.compiling import ANNOUNCEMENT
 
 PROCESSOR_SECONDS, SECONDS = 20.0, 300.0
 """Of one case; the second for what waits instead of working."""
@@ -81,7 +82,8 @@ def command(*arguments: str) -> Answer:
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
-    return Answer(code, out.getvalue(), err.getvalue(), raised)
+    said = err.getvalue().removeprefix(f"{ANNOUNCEMENT}\n")  # the first command of a machine may say so
+    return Answer(code, out.getvalue(), said, raised)
 
 
 def complaint(answer: Answer, *named: str) -> str | None:

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from scenarios.errors import InputError
+from scenarios.simulation.compiling import ANNOUNCEMENT
 from scenarios.storage import run_folder
 
 KILLS = 60
@@ -82,7 +83,7 @@ def whole(arguments: Sequence[str], folder: Path) -> float:
     """
     begin = time.monotonic()
     process = start(arguments, folder)
-    err = process.communicate()[1]
+    err = process.communicate()[1].removeprefix(f"{ANNOUNCEMENT}\n")
     if process.returncode not in (0, 1) or err:
         raise RuntimeError(f"{arguments}: {process.returncode}: {err}")
     return time.monotonic() - begin
