@@ -55,6 +55,9 @@ class Robotarium(ABC):
     drives_in: bool
     """Whether the public simulator of this generation begins at the chargers."""
 
+    alternates = True
+    """Whether poses are asked for once before each step; in 2018 they were not."""
+
     held = True
     """Whether robots on ``pymunk`` hold a pose as there; see :class:`robots.rps.simulation.Simulation`."""
 
@@ -99,7 +102,7 @@ class Robotarium(ABC):
         Raises:
             RuntimeError: called a second time before :meth:`step`.
         """
-        if self._observed:
+        if self._observed and self.alternates:
             raise RuntimeError("get_poses() was called twice, expected step() in between")
         self._observed = True
         return self._columns()
@@ -133,7 +136,7 @@ class Robotarium(ABC):
         Raises:
             RuntimeError: :meth:`get_poses` was not called since the last step.
         """
-        if not self._observed:
+        if not self._observed and self.alternates:
             raise RuntimeError("step() was called without get_poses() before it")
         self._observed = False
         self._simulation.step(self._twist)

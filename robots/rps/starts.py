@@ -27,6 +27,9 @@ LONGEST_DRIVE = 18_000
 WAIT, STIR, NUDGE = 150, 0.1, 0.25
 """Steps for which a robot moves less than ``STIR``, metres, before it drives to a place within ``NUDGE`` first."""
 
+FORGOTTEN, FORGOTTEN_WAIT = (0, 1), 1500
+"""Whom ``rps`` forgets, and how many steps they wait instead."""
+
 QUIET = 0.1
 """Of a wish, (v, omega) in m/s and rad/s, below which a robot is not held up but about to arrive."""
 
@@ -84,8 +87,9 @@ def near(poses: Real, draws: np.random.Generator) -> Real:
 def drive_in(simulation: Simulation, goals: Real, boundaries: Real, stepped: Callable[[], None]) -> int:
     """Drive robots from where they stand to within the testbed's tolerance of goals (N, 3); the steps it took.
 
-    As ``rps`` 2.1 does: the hybrid controller and the unicycle certificate, and for who is held up on the way a place
-    nearby to drive to first. (There, a mask taken for numbers keeps robots 0 and 1 from that.)
+    As ``rps`` 2.1 does: the hybrid controller and the unicycle certificate, and for who is held up a place nearby to
+    drive to first. There a mask is taken for numbers, which looks after robots that have arrived too and keeps 0 and 1
+    from being looked after at all; here it is those that have not arrived, these two after ten times as long.
 
     Args:
         simulation: what drives.
@@ -121,7 +125,7 @@ def drive_in(simulation: Simulation, goals: Real, boundaries: Real, stepped: Cal
         around, _ = controller(x, np.where(np.isnan(detour), target, detour), np.ones(n))
         moved = np.linalg.norm(x[:2] - held_at[:2], axis=0)
         for robot in np.flatnonzero(~who):
-            waits = step - since[robot] > WAIT
+            waits = step - since[robot] > (FORGOTTEN_WAIT if robot in FORGOTTEN else WAIT)
             if not np.isnan(detour[0, robot]):
                 wish[:, robot] = around[:, robot]
                 if moved[robot] > STIR:

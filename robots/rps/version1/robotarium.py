@@ -99,6 +99,7 @@ class Robotarium(Common):
         **others: Any,
     ) -> None:
         ignored(sorted(others), KNOWN)
+        self.alternates = number_of_agents is None
         self.initial_conditions = initial_conditions
         self.obstacles = obstacles
         super().__init__(

@@ -55,6 +55,9 @@ def test_version_one_cuts_commands_and_has_its_own_base() -> None:
     assert (robots.base_length, robots.number_of_agents, robots.boundaries[2]) == (0.105, 3, 3.2)
     robots.step()
     np.testing.assert_allclose(robots.poses, robots.get_poses())
+    np.testing.assert_allclose(
+        robots.poses, robots.get_poses(), err_msg="in 2018 poses were given as often as asked for"
+    )
     turned = robots.poses[2, 0]
     wheels = np.array([0.2 + 0.0525 * 0.4 / 0.11, 0.2 - 0.0525 * 0.4 / 0.11]) / 0.016
     assert turned == pytest.approx(0.033 * 0.016 / 0.105 * np.diff(np.clip(wheels, -12.5, 12.5))[0])
