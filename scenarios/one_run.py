@@ -61,15 +61,39 @@ def run_to_folder(
         compile_filter(experiment.safety)
         with progress_bar(console, experiment.file.name) as advance:
             trajectory = simulate(experiment, seed, advance, view)
-        metrics = measure(experiment, trajectory)
-        summary = result(experiment, seed, trajectory, metrics)
-        run_folder.write(scratch, experiment, trajectory, metrics.angle_errors, summary)
-        with _recording(encoder, scratch, console):
-            _draw_overview(experiment, trajectory, metrics, scratch)
+        metrics, summary = _finish(experiment, seed, trajectory, scratch, encoder, console)
     _close_view(view, live, summary, console)
     print_result(console, summary)
     console.print(f"run folder: {escape(plain(str(folder)))}")
     return metrics.outcome == "converged"
+
+
+def keep(experiment: Experiment, trajectory: Trajectory, folder: Path, console: Console) -> bool:
+    """Make a run folder of a trajectory that something else than the simulation gave, and print its result.
+
+    Returns:
+        Whether it reached the experiment's goal.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    with run_folder.writing(folder) as scratch, Encoder() as encoder:
+        metrics, summary = _finish(experiment, 0, trajectory, scratch, encoder, console)
+    print_result(console, summary)
+    console.print(f"run folder: {escape(plain(str(folder)))}")
+    return metrics.outcome == "converged"
+
+
+def _finish(
+    experiment: Experiment, seed: int, trajectory: Trajectory, scratch: Path, encoder: Encoder | None, console: Console
+) -> tuple[Metrics, dict[str, Any]]:
+    """Measure, and write what a run folder holds."""
+    metrics = measure(experiment, trajectory)
+    summary = result(experiment, seed, trajectory, metrics)
+    run_folder.write(scratch, experiment, trajectory, metrics.angle_errors, summary)
+    with _recording(encoder, scratch, console):
+        _draw_overview(experiment, trajectory, metrics, scratch)
+    return metrics, summary
 
 
 def _draw_overview(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, folder: Path) -> None:

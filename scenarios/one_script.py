@@ -13,10 +13,12 @@ import numpy as np
 from rich.console import Console
 from rich.markup import escape
 
+from robots.measured import MEASURED
 from robots.model import CONTROL_PERIOD
 from robots.rps.robotarium import Robotarium
 from robots.rps.session import Session, Start
 from robots.rps.simulation import WHEELED
+from robots.worlds import MEASURED_PLANTS
 from scenarios.errors import InputError, did_you_mean
 from scenarios.measures.script_result import chosen, script_result
 from scenarios.recording import file as recording_file
@@ -49,9 +51,10 @@ class Settings:
         recorded: whether the folder gets a recording.
         live: whether a viewer watches.
         on_screen: whether the script's figures are shown while it runs.
+        measured: whether the robots are as logs and firmware show them.
 
     Raises:
-        InputError: there is no such plant.
+        InputError: there is no such plant, or it has no measured robots.
     """
 
     plant: str = "pymunk"
@@ -61,10 +64,13 @@ class Settings:
     recorded: bool = True
     live: bool = False
     on_screen: bool = False
+    measured: bool = False
 
     def __post_init__(self) -> None:
         if self.plant not in WHEELED:
             raise InputError(f"--plant {self.plant}: scripts need wheels, {did_you_mean(self.plant, WHEELED)}")
+        if self.measured and self.plant not in MEASURED_PLANTS:
+            raise InputError(f"--measured: robots move on {' and '.join(MEASURED_PLANTS)}, got --plant {self.plant}")
 
 
 def run_script(
@@ -95,6 +101,7 @@ def run_script(
         if robots is None:
             raise InputError(f"{file.path}: made no robots, so that there is nothing to keep{_why(ending)}")
         result = script_result(file, arguments, settings.seed, settings.start, settings.plant, ending, robots)
+        result["robot_model"] = "measured" if settings.measured else "nominal"
         script_folder.write(scratch, file.source, robots.record(), camera.frames(robots), result)
         if encoder is not None:
             encoder.begin(scratch)
@@ -136,6 +143,7 @@ def _session(
         stepped,
         tell,
         settings.on_screen,
+        MEASURED if settings.measured else None,
     )
 
 

@@ -26,6 +26,10 @@ _ROUNDS = 5  # guesses of the lag
 _STILL = 0.05  # of its deviation: a lag that moves by less stands still
 _GRADIENT = 0.05  # of the likelihood, at which a fit is done: a hundredth of a deviation
 _LAGS = np.arange(-3.0, 3.01, 0.25)
+_LINEARISED = (
+    0.025  # relative deviation allowed to slips for what the linear model leaves out where a robot accelerates:
+)
+# without it their intervals hold the truth in 92 to 93.5 of 100 synthetic logs
 _BLURRED, _SHARPEST = 1.5, 1e-6  # half widths of a logarithm's interval between which it is believed
 _LARGEST_NOISE = 2.0  # of a logarithm; no noise of a robot is larger
 _WINDOW = 5  # turns over which the first guess of the lag compares ways
@@ -138,7 +142,8 @@ def _most_likely(likelihood: Likelihood, start: Real) -> Real:
 
 def _noise_intervals(noises: Real, likelihood: Likelihood) -> dict[str, Interval]:
     """Normal in the noises' logarithms; from 0 up where the log does not tell a noise from none."""
-    half = QUANTILE_95 * likelihood.deviations(noises)
+    allowed = np.array([_LINEARISED if name.startswith("slip") else 0.0 for name in LOGARITHMIC] + [0.0])
+    half = QUANTILE_95 * np.hypot(likelihood.deviations(noises), allowed)
     found = {}
     for i, name in enumerate(LOGARITHMIC):
         value, width = float(noises[i]), float(half[i])

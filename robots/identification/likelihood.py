@@ -26,6 +26,8 @@ LOGARITHMIC = ("position_noise", "heading_noise", "slip_along", "slip_heading", 
 AXES = 3
 """Of a pose: x, y, theta."""
 
+_MEMORY = 6  # turns over which what the model leaves out may be correlated (Newey and West 1987, likewise from memory)
+
 _STEP = 1e-6  # of a noise's parameter, for differences
 _FARTHEST = 30.0  # of a logarithm: keeps the optimiser's trials finite
 
@@ -126,6 +128,9 @@ class Likelihood:
         self._slope = slopes.sum(axis=1) + restriction / 2.0
         turns = slopes.reshape(len(noises), -1, AXES).sum(axis=2)
         self._scatter = turns @ turns.T
+        for after in range(1, _MEMORY + 1):
+            together = (1.0 - after / (_MEMORY + 1)) * (turns[:, after:] @ turns[:, :-after].T)
+            self._scatter += together + together.T
         dv = de + white.residuals * df / 2.0
         self._curvature = dv @ dv.T + df @ df.T / 2.0
 

@@ -54,7 +54,6 @@ class MeasuredModel:
         2.7, "PWM s/rad", "firmware", "gain on the speed's error, added each turn (_kpMotor)"
     )
     integral: float = _constant(0.9, "PWM/rad", "firmware", "gain on the error's integral, likewise (_kiMotor)")
-    derivative: float = _constant(0.0, "PWM s^2/rad", "firmware", "_kdMotor is an int initialised by 0.95, which is 0")
     largest_pwm: float = _constant(255.0, "PWM", "firmware", "the driver's full scale")
     pwm_slew: float = _constant(50.0, "PWM", "firmware", "largest change a turn (_maxMotorInc)")
     still_speed: float = _constant(

@@ -4,8 +4,9 @@ Every 10 ms each wheel's speed is taken from whole encoder counts, 0.224 rad/s a
 
     error = wish - speed,   sum = sum + error 0.01,   PWM = PWM + int(2.7 error + 0.9 sum),
 
-cut to 255 and to steps of 50. It takes effect at the next turn of the loop. Between two turns the wheel follows
-full_speed PWM / 255 with a first-order lag.
+cut to 255 and to steps of 50. It takes effect at the next turn of the loop. (There is a derivative gain in the
+firmware, an integer initialised by 0.95, which is 0.) Between two turns the wheel follows full_speed PWM / 255 with a
+first-order lag.
 """
 
 from __future__ import annotations

@@ -50,6 +50,8 @@ class Measured:
 
     Attributes:
         wheel_speeds: (..., n, 2) commanded speeds, rad/s: it is commands that the testbed judges.
+        rolled: (..., n, 2) mean speeds at which the wheels turned in the last period, rad/s.
+        seen_poses: (..., n, 3) as the cameras say.
         radius, base: (..., n) of each robot, metres.
     """
 
@@ -74,6 +76,7 @@ class Measured:
         self._link = Link(robots, drive, model)
         self._camera = Camera(body.poses, model)
         self.wheel_speeds = np.zeros((*robots, 2))
+        self.rolled = np.zeros((*robots, 2))
         self._observe()
 
     def step(self, controller: Controller, period: float) -> None:
@@ -81,8 +84,8 @@ class Measured:
         self.wheel_speeds = self._drive.saturate(controller(*self.seen) @ self._to_wheels, self._saturation)
         before = self._link.wish
         after = self._link.send(self.wheel_speeds, luck[..., 0], period)
-        wheels = self._loop.advance(before, after, self._model.command_delay, period)
-        self._body.move(self._twist(wheels, normal[..., 4:], period), period)
+        self.rolled = self._loop.advance(before, after, self._model.command_delay, period)
+        self._body.move(self._twist(self.rolled, normal[..., 4:], period), period)
         self._camera.take(self._body.poses, normal[..., :4], luck[..., 1], period)
         self._observe()
 
@@ -97,6 +100,7 @@ class Measured:
         return np.stack([v + along * normal[..., 0] / period, omega + turning * normal[..., 1] / period], axis=-1)
 
     def _observe(self) -> None:
-        body, theta = self._body, self._camera.seen[..., 2]
+        body, self.seen_poses = self._body, self._camera.seen
+        theta = self.seen_poses[..., 2]
         self.poses, self.points, self.headings, self.contacts = body.poses, body.points, body.headings, body.contacts
-        self.seen = self._nid.project(self._camera.seen), np.stack([np.cos(theta), np.sin(theta)], axis=-1)
+        self.seen = self._nid.project(self.seen_poses), np.stack([np.cos(theta), np.sin(theta)], axis=-1)

@@ -89,7 +89,9 @@ class Robotarium(ABC):
         self._twist = np.zeros((self.number_of_robots, 2))
         self._observed = False
         self._picture: Picture | None = None
-        self._simulation = Simulation(goals, self.robot, plant, self.held)
+        self._simulation = Simulation(
+            goals, self.robot, plant, self.held, self._session.measured, self._session.start_draws
+        )
         if driven:
             self._begin(goals, chargers)
         if show_figure and "matplotlib.pyplot" in sys.modules:
@@ -216,7 +218,7 @@ class Robotarium(ABC):
         return self.debug()
 
     def _columns(self) -> Real:
-        x, y, theta = self._simulation.poses.T
+        x, y, theta = self._simulation.seen.T
         return np.stack([x, y, wrapped(theta)])
 
     def _drawing(self) -> Picture:

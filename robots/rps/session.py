@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 if TYPE_CHECKING:
+    from robots.measured import MeasuredModel
     from robots.rps.robotarium import Robotarium
 
 Start = Literal["exact", "near", "driven"]
@@ -36,6 +37,7 @@ class Session:
         stepped: called with it after every step.
         told: called with remarks that are for the person, not for the script.
         on_screen: whether figures are shown while the script runs.
+        measured: the robots as logs and firmware show them; None for the data sheet's.
     """
 
     plant: str = "pymunk"
@@ -45,6 +47,7 @@ class Session:
     stepped: Callable[[Robotarium], None] = _nobody
     told: Callable[[str], None] = _nowhere
     on_screen: bool = False
+    measured: MeasuredModel | None = None
 
 
 _running = [Session()]

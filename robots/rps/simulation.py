@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.arena import ROBOTARIUM_FLOOR, Arena
+from robots.measured import MeasuredModel
+from robots.measured.world import Measured
 from robots.model import COLLISION_CENTRE, CONTROL_PERIOD, RobotModel
 from robots.nid import NearIdentityDiffeomorphism
 from robots.worlds import PLANTS, make_world
@@ -50,23 +52,43 @@ class Simulation:
         robot: what they are.
         plant: one of :data:`WHEELED`.
         held: whether on ``pymunk`` axles go exactly where wheels carry them; see :meth:`_compensated`.
+        measured: the robots as logs and firmware show them, on the plants that have them; None for the data sheet's.
+        draws: whose spawned streams measured robots draw from.
 
     Attributes:
+        seen: (N, 3) poses of the axles as the cameras give them: the true ones of the data sheet's robots.
         motion: (N, 2) v and omega of the last period as the axles moved, m/s and rad/s.
         turned: (N, 2) by how much the wheels turned in it, left and right, radians.
     """
 
-    def __init__(self, poses: Real, robot: RobotModel, plant: str, held: bool = True) -> None:
-        self._robot, self._plant, self._held = robot, plant, held
+    def __init__(
+        self,
+        poses: Real,
+        robot: RobotModel,
+        plant: str,
+        held: bool = True,
+        measured: MeasuredModel | None = None,
+        draws: np.random.Generator | None = None,
+    ) -> None:
+        self._robot, self._plant, self._held, self._measured = robot, plant, held, measured
+        self._draws = np.random.default_rng(0) if draws is None else draws
         self.place(poses)
 
     def place(self, poses: Real) -> None:
         """Stand at poses (N, 3), with no past."""
         self._world = make_world(
-            self._plant, _NID.project(poses), poses[:, 2], nid=_NID, robot=self._robot, saturation="clip", arena=_FLOOR
+            self._plant,
+            _NID.project(poses),
+            poses[:, 2],
+            nid=_NID,
+            robot=self._robot,
+            saturation="clip",
+            arena=_FLOOR,
+            measured=self._measured,
+            generators=[self._draws],
         )
+        self._observe()
         self.motion = np.zeros((len(poses), 2))
-        self.turned = np.zeros((len(poses), 2))
         self._poses = [self._world.poses.copy()]
         self._commands = [np.zeros((len(poses), 2))]
         self._contacts = [self._world.contacts.copy()]
@@ -87,7 +109,7 @@ class Simulation:
         self._world.step(lambda points, headings: velocity, CONTROL_PERIOD)
         after = self._world.poses.copy()
         self.motion = _motion(before, after)
-        self.turned = CONTROL_PERIOD * self._world.wheel_speeds
+        self._observe()
         self._poses.append(after)
         self._commands.append(np.array(twist))
         self._contacts.append(self._world.contacts.copy())
@@ -105,6 +127,11 @@ class Simulation:
         limited = drive.twist(drive.saturate(drive.wheel_speeds(twist), "clip"))
         limited[:, 0] -= self._robot.chassis.centre_offset * limited[:, 1] ** 2 * CONTROL_PERIOD / SUBSTEPS / 2.0
         return limited
+
+    def _observe(self) -> None:
+        world = self._world
+        self.seen = world.seen_poses if isinstance(world, Measured) else world.poses.copy()
+        self.turned = CONTROL_PERIOD * (world.rolled if isinstance(world, Measured) else world.wheel_speeds)
 
     def recorded(self) -> Record:
         """All that happened so far."""

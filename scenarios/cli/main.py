@@ -25,7 +25,7 @@ FAMILIES: tuple[tuple[click.Command, ...], ...] = (
     (design.design,),
     (export.export,),
     (script.script,),
-    (testbed.identify, testbed.ladder_command),
+    (testbed.identify, testbed.adopt, testbed.ladder_command, testbed.calibrate, testbed.testbed_page),
 )
 """All commands, a family a file."""
 

@@ -12,6 +12,7 @@ from scenarios.cli.exits import DONE, INTERRUPTED, MISSED
 
 if TYPE_CHECKING:
     from robots.rps.hook import Version
+    from robots.rps.session import Start
 
 
 @click.command()
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 @click.argument("arguments", nargs=-1, metavar="[-- ARGS]")
 @click.option("--plant", default="pymunk", show_default=True, metavar="P", help="unicycle, saturated or pymunk.")
 @options.seed("Seed of numpy's and Python's global generators when the script begins.")
+@click.option("--measured", is_flag=True, help="With robots as logs and firmware show them.")
 @click.option("--drive-to-start", "driven", is_flag=True, help="Begin at the chargers, as on the testbed.")
 @click.option("--near-start", "near", is_flag=True, help="Begin anywhere within the testbed's tolerance of the start.")
 @click.option("--duration", type=click.FloatRange(min=0.0, min_open=True), metavar="S", help="Stop it after S seconds.")
@@ -32,6 +34,7 @@ def script(
     arguments: tuple[str, ...],
     plant: str,
     seed: int,
+    measured: bool,
     driven: bool,
     near: bool,
     duration: float | None,
@@ -53,9 +56,8 @@ def script(
 
     if driven and near:
         raise InputError("--near-start: not together with --drive-to-start")
-    settings = Settings(
-        plant, seed, "driven" if driven else "near" if near else "exact", duration, recorded, live, on_screen
-    )
+    start: Start = "driven" if driven else "near" if near else "exact"
+    settings = Settings(plant, seed, start, duration, recorded, live, on_screen, measured)
     generations: dict[str | None, Version | None] = {None: None, "1": 1, "2": 2}
     ending, accepted = run_script(read(file, generations[version]), arguments, settings, out, new_console())
     code = INTERRUPTED if ending.outcome == "interrupted" else ending.code or (DONE if accepted else MISSED)

@@ -4,6 +4,7 @@ A study opens, runs, measures and prints; how one run is made or measured is not
 """
 
 __all__ = [
+    "adoption",
     "audit",
     "check",
     "design",
@@ -15,4 +16,5 @@ __all__ = [
     "reproduction",
     "shares",
     "sweep",
+    "testbed",
 ]

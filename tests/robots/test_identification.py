@@ -208,7 +208,7 @@ def test_a_file_that_is_no_log_is_refused(name: str, content: bytes, said: str, 
         read_arrays(tmp_path / name)
 
 
-def test_an_archive_without_counts_says_what_it_has(tmp_path: Path) -> None:
-    np.savez(tmp_path / "log.npz", poses=np.zeros((300, 3)))
-    with pytest.raises(LogError, match=r"no array of encoder counts: .* got poses"):
+def test_an_archive_without_poses_says_what_it_has(tmp_path: Path) -> None:
+    np.savez(tmp_path / "log.npz", places=np.zeros((300, 3)))
+    with pytest.raises(LogError, match=r"no array of poses: .* got places"):
         read_arrays(tmp_path / "log.npz")
