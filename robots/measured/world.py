@@ -81,7 +81,7 @@ class Measured:
 
     def step(self, controller: Controller, period: float) -> None:
         normal, luck = self._streams.period()
-        self.wheel_speeds = self._drive.saturate(controller(*self.seen) @ self._to_wheels, self._saturation)
+        self.wheel_speeds = self._drive.saturate(controller(*self.seen, 0.0) @ self._to_wheels, self._saturation)
         before = self._link.wish
         after = self._link.send(self.wheel_speeds, luck[..., 0], period)
         self.rolled = self._loop.advance(before, after, self._model.command_delay, period)

@@ -106,7 +106,7 @@ class Simulation:
     def step(self, twist: Real) -> None:
         """Advance by one control period at commanded twists (N, 2)."""
         before, velocity = self._poses[-1], _NID.velocity(self._compensated(twist))
-        self._world.step(lambda points, headings: velocity, CONTROL_PERIOD)
+        self._world.step(lambda points, headings, elapsed: velocity, CONTROL_PERIOD)
         after = self._world.poses.copy()
         self.motion = _motion(before, after)
         self._observe()

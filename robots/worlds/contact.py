@@ -82,7 +82,7 @@ class Contact:
         return self.points, self.headings
 
     def step(self, controller: Controller, period: float) -> None:
-        wheels = controller(self.points, self.headings) @ self._to_wheels
+        wheels = controller(self.points, self.headings, 0.0) @ self._to_wheels
         self.wheel_speeds = self._drive.saturate(wheels, self._saturation)
         self.move(self.wheel_speeds @ self._to_twist, period)
 

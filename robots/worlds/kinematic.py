@@ -35,13 +35,13 @@ class SingleIntegrator:
     def step(self, controller: Controller, period: float) -> None:
         h, p, frame = period, self.points, self.headings.view(np.complex128)
 
-        def derivative(points: Real) -> Real:
-            return (controller(points, self.headings).view(np.complex128) * frame).view(np.float64)
+        def derivative(points: Real, elapsed: float) -> Real:
+            return (controller(points, self.headings, elapsed).view(np.complex128) * frame).view(np.float64)
 
-        k1 = derivative(p)
-        k2 = derivative(p + (h / 2.0) * k1)
-        k3 = derivative(p + (h / 2.0) * k2)
-        k4 = derivative(p + h * k3)
+        k1 = derivative(p, 0.0)
+        k2 = derivative(p + (h / 2.0) * k1, h / 2.0)
+        k3 = derivative(p + (h / 2.0) * k2, h / 2.0)
+        k4 = derivative(p + h * k3, h)
         self.points = p + (h / 6.0) * (k1 + 2.0 * (k2 + k3) + k4)
         self.poses[..., :2] = self.points
 
@@ -67,7 +67,7 @@ class Unicycle:
         return self.points, self.headings
 
     def step(self, controller: Controller, period: float) -> None:
-        self.wheel_speeds = self._limited(controller(self.points, self.headings) @ self._to_wheels)
+        self.wheel_speeds = self._limited(controller(self.points, self.headings, 0.0) @ self._to_wheels)
         self.move(self.wheel_speeds @ self._to_twist, period)
 
     def move(self, twist: Real, period: float) -> None:

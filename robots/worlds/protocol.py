@@ -2,7 +2,7 @@
 
 A world holds the state of all robots and advances it by one control period. It asks the controller for the body-frame
 velocities of the projected points as often as its integrator needs: a sampled plant once per period, the continuous
-model of the theorem at every stage of its Runge-Kutta step.
+model of the theorem at every stage of its Runge-Kutta step, with the time of the stage.
 """
 
 from collections.abc import Callable
@@ -17,9 +17,9 @@ Index = NDArray[np.intp]
 NOTHING = -1
 """What a robot touches that touches nothing."""
 
-Controller = Callable[[Real, Real], Real]
-"""Maps projected points (..., n, 2), metres, and unit heading vectors (..., n, 2) to body-frame velocities (..., n, 2),
-m/s, of the projected points."""
+Controller = Callable[[Real, Real, float], Real]
+"""Maps projected points (..., n, 2), metres, unit heading vectors (..., n, 2), and the seconds since the control period
+began, to body-frame velocities (..., n, 2), m/s, of the projected points."""
 
 
 class World(Protocol):

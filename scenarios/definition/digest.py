@@ -29,6 +29,8 @@ LATER_KEYS = (
     ("robot", "numbers"),
     ("robot", "base_spread"),
     ("robot", "radius_spread"),
+    ("reference",),
+    ("law", "feedforward"),
 )
 """Keys that came after the first baselines: at their defaults they are not in a scenario's digest."""
 

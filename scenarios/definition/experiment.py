@@ -37,6 +37,7 @@ from scenarios.definition.files import robot_file
 from scenarios.definition.formations import Aim, build_aim, with_graph
 from scenarios.definition.load import ScenarioFile, load
 from scenarios.definition.own_law import NotLoaded, OwnFactory, check_parameters
+from scenarios.definition.references import build_reference
 from scenarios.definition.schema import LawTable, Scenario
 from scenarios.definition.starts import Starts, build_starts
 from scenarios.definition.targets import in_order
@@ -230,6 +231,8 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
         raise InputError(f"{path}: sensor.delay_periods: the plant single_integrator is continuous, expected 0")
     if scenario.law.name == "angle" and aim.target is not None:
         _check_rates(path, aim.target, scenario.plant.control_period_s)
+    if scenario.law.feedforward:
+        _check_feedforward(path, scenario, aim)
     arena = _arena(path, scenario)
     phases = _phases(path, scenario, aim.formation, duration)
     own_gains = _own_gains(path, scenario, aim)
@@ -266,6 +269,14 @@ def _check_rates(path: str, target: TargetFormation, control_period: float) -> N
             f"{abs(np.sin(target.follower_angles[slowest])):.2g}: at {rates[slowest]:.2g} 1/s it cannot settle within "
             f"the longest run, {longest:g} s"
         )
+
+
+def _check_feedforward(path: str, scenario: Scenario, aim: Aim) -> None:
+    """The feed-forward belongs to the angle law on its leader-first-follower graph, all followers active."""
+    if scenario.law.name != "angle" or aim.formation is not aim.target:
+        raise InputError(f'{path}: law.feedforward: only for law.name = "angle", got "{scenario.law.name}"')
+    if scenario.law.activation == "sequential":
+        raise InputError(f"{path}: law.feedforward: followers that wait cannot follow, expected all to be active")
 
 
 def _arena(path: str, scenario: Scenario) -> Arena:
@@ -374,6 +385,11 @@ def _robot(scenario: Scenario) -> RobotModel:
 def _phases(path: str, scenario: Scenario, formation: Framework, duration: float | None) -> tuple[Phase, ...]:
     """The maneuver, cut or extended to ``duration``; one phase named after the law's aim where no phases are given."""
     deltas = _displacements(path, scenario, formation)
+    if scenario.reference is not None:
+        reference = build_reference(path, scenario.reference)
+        velocity = complex(reference.velocity(0.0))
+        length = duration or scenario.duration_s or 0.0
+        return (Phase(scenario.reference.kind, length, (velocity.real, velocity.imag), deltas[0], reference),)
     if not scenario.phases:
         return (Phase("shape", duration or scenario.duration_s or 0.0, delta=deltas[0]),)
     phases, elapsed = [], 0.0
@@ -390,24 +406,36 @@ def _phases(path: str, scenario: Scenario, formation: Framework, duration: float
 
 def _displacements(path: str, scenario: Scenario, formation: Framework) -> list[tuple[float, float] | None]:
     """delta_12 of each phase: the scenario's, or that of p* for a law that takes its own from the target."""
-    given = [phase.displacement_m for phase in scenario.phases] or [None]
+    if scenario.reference is not None:
+        given = [scenario.reference.displacement_m]
+    else:
+        given = [phase.displacement_m for phase in scenario.phases] or [None]
     for number, delta in enumerate(given, start=1):
         if delta is not None and not any(delta):
-            raise InputError(f"{path}: phases[{number}].displacement_m: agents 1 and 2 must not be sent to one place")
+            field = "reference" if scenario.reference is not None else f"phases[{number}]"
+            raise InputError(f"{path}: {field}.displacement_m: agents 1 and 2 must not be sent to one place")
     if scenario.law.name == "own":
         return given
     if scenario.law.name != "angle":
         if not LAWS[scenario.law.name].steers:
             if any(delta is not None for delta in given):
-                raise InputError(f"{path}: phases.displacement_m: the {scenario.law.name} law follows none")
+                field = "phases" if scenario.reference is None else "reference"
+                raise InputError(f"{path}: {field}.displacement_m: the {scenario.law.name} law follows none")
             return given
-        x, y = formation.positions[agents.FIRST_FOLLOWER] - formation.positions[agents.LEADER]
-        return [(float(x), float(y)) if delta is None else delta for delta in given]
+        return [_of_target(formation) if delta is None else delta for delta in given]
     if scenario.law.first_follower == "stationary":
         return given
+    if scenario.reference is not None:
+        return [given[0] or _of_target(formation)]
     if not scenario.phases:
         raise InputError(f"{path}: law.first_follower: {scenario.law.first_follower!r} needs phases to follow")
     for number, delta in enumerate(given, start=1):
         if delta is None:
             raise InputError(f"{path}: phases[{number}].displacement_m: missing")
     return given
+
+
+def _of_target(formation: Framework) -> tuple[float, float]:
+    """p*_2 - p*_1, metres."""
+    x, y = formation.positions[agents.FIRST_FOLLOWER] - formation.positions[agents.LEADER]
+    return float(x), float(y)

@@ -15,6 +15,7 @@ from scenarios.definition.digest import digest
 from scenarios.definition.files import law_file
 from scenarios.definition.files.law_file import LawFile
 from scenarios.definition.files.reading import read_regular
+from scenarios.definition.files.way_points import with_file
 from scenarios.definition.schema import LawTable, Scenario
 from scenarios.errors import InputError, did_you_mean, plain
 
@@ -94,7 +95,7 @@ def load(scenario: str, changes: Sequence[str] = ()) -> ScenarioFile:
         data = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # besides TOMLDecodeError: numbers too long, nesting too deep
         raise InputError(f"{scenario}: not valid TOML: {error}") from error
-    validated = validate(with_changes(data, changes), scenario)
+    validated = validate(with_file(with_changes(data, changes), scenario, path.parent), scenario)
     if validated.robot.file is not None:
         from scenarios.definition.files import robot_file  # robots bring numpy, which few commands that load need
 
@@ -154,6 +155,8 @@ def validate(data: Mapping[str, Any], file: str) -> Scenario:
     if bool(scenario.phases) == (scenario.duration_s is not None):
         both = "both" if scenario.phases else "neither"
         raise InputError(f"{file}: duration_s: expected either duration_s or phases, got {both}")
+    if scenario.reference is not None and scenario.phases:
+        raise InputError(f"{file}: reference: expected either reference or phases, got both")
     _check_own_law(scenario.law, file)
     return scenario
 

@@ -81,6 +81,48 @@ class PhaseTable(Table):
     """delta_12 = p_2 - p_1 that the first follower is told, in the common frame."""
 
 
+class WayPointTable(Table):
+    """A place that the leader passes at a time."""
+
+    t_s: NotNegative
+    """Seconds since the start; the first is 0, and they increase."""
+    position_m: Vector
+    """Of the leader; differences from the first count, as the leader begins where it starts."""
+    scale: Positive = 1.0
+    """Of the formation, relative to the first."""
+    turn_deg: Number = 0.0
+    """Of the formation, counter-clockwise, not wrapped; differences from the first count."""
+
+
+class ReferenceTable(Table):
+    """A motion that changes all the time, in the place of phases: a closed curve, or way-points with times."""
+
+    kind: Literal["circle", "ellipse", "figure-eight", "way-points"]
+    """The leader's path. Way-points are joined by cubic splines, twice continuously differentiable, at rest at both
+    ends."""
+    width_m: Positive | None = None
+    """Of a closed curve, along `direction_deg`; the diameter of a circle."""
+    height_m: Positive | None = None
+    """Of an ellipse or a figure eight, across it."""
+    period_s: Positive | None = None
+    """Of one round; or give the speed."""
+    speed_m_s: Positive | None = None
+    """Mean speed of the leader on a closed curve; a circle's is constant."""
+    direction_deg: Number = 0.0
+    """Of a closed curve's width; circle and ellipse begin that way, a figure eight in its crossing."""
+    clockwise: Flag = False
+    """Whether a closed curve bends to the right first."""
+    orientation: Literal["along-path", "kept"] = "along-path"
+    """Whether the formation turns as a closed curve does, or keeps its orientation."""
+    displacement_m: Vector | None = None
+    """delta_12 at the start, in the common frame; the target's where absent."""
+    points: Annotated[tuple[WayPointTable, ...], Field(max_length=LONGEST_RUN)] = ()
+    """Way-points."""
+    file: str | None = None
+    """In their place, a comma-separated file with the columns t_s, x_m, y_m and, if you like, scale and turn_deg, read
+    when the scenario is; its path starts where the scenario file is."""
+
+
 class LawTable(Table):
     """The formation law."""
 
@@ -114,6 +156,9 @@ class LawTable(Table):
     gain: Literal["paper", "normalised"] = "paper"
     """Of all followers of the angle law: 1, eq. (u) as the paper has it, or 1 / sin^2, which makes all rates 1 per
     second; `show` tells its price in noise."""
+    feedforward: Flag = False
+    """Whether agents are told mu = delta'/delta, how the formation scales and turns, so that the angle law follows
+    without lag; needs no compass."""
     activation: Literal["simultaneous", "sequential"] = "simultaneous"
     """Whether each follower waits until its neighbours have settled (Lemma 3)."""
     settled_m: Positive = 0.005
@@ -299,6 +344,7 @@ class Scenario(Table):
     """Numbers of the leader and of the first follower where the graph is not given; 1 and 2 where absent."""
     law: LawTable = LawTable()
     phases: Annotated[tuple[PhaseTable, ...], Field(max_length=LONGEST_RUN)] = ()
+    reference: ReferenceTable | None = None
     velocity_known_by: Literal["all", "leader"] = "all"
     """Whether v_r is broadcast, or known to the leader alone and spread over the communication graph."""
     communication: CommunicationTable = CommunicationTable()

@@ -29,6 +29,8 @@ def start_poses(experiment: Experiment, seed: int) -> Real:
     for field, value, expected in _required(scenario):
         if value != expected:
             raise InputError(f"{path}: {field}: a script for the testbed needs {expected!r}, got {value!r}")
+    if scenario.reference is not None:
+        raise InputError(f"{path}: reference: a script for the testbed needs phases")
     if scenario.obstacles:
         raise InputError(f"{path}: obstacles: the testbed has none, got {len(scenario.obstacles)}")
     for axis, side, floor in (

@@ -21,7 +21,7 @@ from scenarios.figures.timelines import MANY, TIME
 from scenarios.measures.late_rates import predicted_late_rates
 from scenarios.measures.metrics import Metrics
 from scenarios.measures.predictions.theory import motion, moves_exactly
-from scenarios.measures.tracking import predicted_ends
+from scenarios.measures.tracking import moving_ends, placed
 from scenarios.simulation.trajectory import Trajectory
 
 Real = NDArray[np.float64]
@@ -92,9 +92,12 @@ def places(experiment: Experiment, trajectory: Trajectory, index: int) -> Real:
     """(T', n, 2) where each agent of a phase should be, at the phase's start and after each of its periods, metres.
 
     The leader and the first follower alone fix the places, so where they are at the end of the phase decides, carried
-    back with v_r: contact may have pushed them from where they were predicted.
+    back with v_r: contact may have pushed them from where they were predicted. On a reference they have no end, and
+    where they are at the moment decides.
     """
     rows = _rows(trajectory, index)
+    if experiment.phases[index].reference is not None:
+        return placed(experiment, trajectory.points[rows])
     leader, first = trajectory.points[rows[-1], : agents.FIRST_ORDINARY]
     end = end_configuration(experiment.formation, leader, first)
     ahead = (trajectory.t[rows[-1]] - trajectory.t[rows])[:, None] * np.array(experiment.phases[index].velocity)
@@ -142,9 +145,8 @@ def _guide(axes: Axes, t: Real, farthest: Real, rate: float) -> None:
 def _note_push(axes: Axes, experiment: Experiment, trajectory: Trajectory, index: int) -> None:
     """Say how far agents 1 and 2 end from where they were predicted."""
     row = _rows(trajectory, index)[-1]
-    predicted = predicted_ends(experiment, trajectory.points[0])[index]
-    ahead = sum(phase.duration for phase in experiment.phases[: index + 1]) - trajectory.t[row]
-    predicted = predicted - ahead * np.array(experiment.phases[index].velocity)
+    when, phase = trajectory.t[row : row + 1], trajectory.phase[row : row + 1]
+    predicted = moving_ends(experiment, trajectory.points[0], when, phase)[0]
     pushed = np.linalg.norm(trajectory.points[row] - predicted, axis=-1)[: agents.FIRST_ORDINARY]
     if pushed.max() > NOTEWORTHY:
         text = f"agents 1, 2 end {1e3 * pushed[0]:.0f} mm, {1e3 * pushed[1]:.0f} mm off prediction"

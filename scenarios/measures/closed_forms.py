@@ -135,7 +135,7 @@ def closed_forms(experiment: Experiment, start: Real) -> ClosedForms | None:
 
 def passages(experiment: Experiment, start: Real) -> Passages | None:
     """Who comes near whom in sequential activation; None where agents 1 and 2 move, or the law is another one."""
-    at_rest = len(experiment.phases) == 1 and not any(experiment.phases[0].velocity)
+    at_rest = len(experiment.phases) == 1 and not experiment.phases[0].moving
     if not has_closed_loop(experiment) or not at_rest or experiment.first_follower != "stationary":
         return None
     target, end = experiment.target, predicted_ends(experiment, start)[-1]

@@ -86,7 +86,7 @@ def predicted_late_rates(experiment: Experiment, trajectory: Trajectory) -> list
 @np.errstate(over="ignore", invalid="ignore")
 def expected_late_rates(experiment: Experiment, start: Real) -> list[float | None] | None:
     """What the theory says before a run from ``start`` (n, 2), metres, of ideal agents; None but for the angle law."""
-    if not has_closed_loop(experiment):
+    if not has_closed_loop(experiment) or experiment.phases[0].reference is not None:
         return None
     for index, phase in enumerate(experiment.phases):
         points = motion(experiment, start, index, HORIZON)
@@ -100,7 +100,9 @@ def expected_late_rates(experiment: Experiment, start: Real) -> list[float | Non
 
 
 def _last_phase(experiment: Experiment, trajectory: Trajectory) -> tuple[Real, Real, Real] | None:
-    """Times (T',), points and places (T', n, 2) of the last phase; None where it has no end."""
+    """Times (T',), points and places (T', n, 2) of the last phase; None where it has no end to rest at."""
+    if experiment.phases[-1].reference is not None:
+        return None
     last = trajectory.phase == trajectory.phase[-1]
     points, t = trajectory.points[last], trajectory.t[last]
     places = _places(experiment, t, points, experiment.phases[trajectory.phase[-1]].velocity)

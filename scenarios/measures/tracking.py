@@ -8,6 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from formation import agents, end_configuration, fit_similarity, pair_ends, wrap
+from formation.laws.feedforward import places
+from formation.maneuver import pair_places
+from formation.plane import as_complex, as_vectors
 from scenarios.definition.experiment import Experiment
 from scenarios.simulation.trajectory import Trajectory
 
@@ -33,7 +36,7 @@ class Tracking:
 
 def predicted_ends(experiment: Experiment, start: Real) -> Real:
     """(P, n, 2) the end configuration of each phase that the theory predicts from a start (n, 2), metres."""
-    pairs = pair_ends(start[: agents.FIRST_ORDINARY], experiment.phases, experiment.first_follower)
+    pairs = pair_ends(start[: agents.FIRST_ORDINARY], experiment.phases, experiment.first_follower, told(experiment))
     return np.stack([end_configuration(experiment.formation, leader, first) for leader, first in pairs])
 
 
@@ -44,11 +47,33 @@ def reference(experiment: Experiment, trajectory: Trajectory) -> Real:
 
 def moving_ends(experiment: Experiment, start: Real, t: Real, phase: NDArray[np.intp]) -> Real:
     """The same from a start (n, 2), metres, at times t (T,), seconds, of the phases with the indices ``phase`` (T,)."""
+    if experiment.phases[0].reference is not None:
+        return following(experiment, start, t)
     ends = predicted_ends(experiment, start)
     velocity = np.array([each.velocity for each in experiment.phases])
     finish = np.cumsum([each.duration for each in experiment.phases])
     ahead = (finish[phase] - t)[:, None] * velocity[phase]
     return ends[phase] - ahead[:, None, :]
+
+
+def following(experiment: Experiment, start: Real, t: Real) -> Real:
+    """(T, n, 2) where agents from a start (n, 2) are at times t (T,) of the only phase, a reference, without lag."""
+    pair = as_complex(start[: agents.FIRST_ORDINARY])
+    leader, first = pair_places(
+        (pair[0], pair[1]), experiment.phases[0], experiment.first_follower, told(experiment), t
+    )
+    return placed(experiment, as_vectors(np.stack([leader, first], axis=-1)))
+
+
+def placed(experiment: Experiment, points: Real) -> Real:
+    """(T, n, 2) where agents 1 and 2 put everybody, of points (T, n or 2, 2), metres: z_k on the line from 1 to 2."""
+    leader, first = as_complex(points)[:, : agents.FIRST_ORDINARY].T
+    return as_vectors(leader[:, None] + places(experiment.formation) * (first - leader)[:, None])
+
+
+def told(experiment: Experiment) -> bool:
+    """Whether agents are told how the formation scales and turns."""
+    return experiment.scenario.law.feedforward
 
 
 def track(experiment: Experiment, trajectory: Trajectory) -> Tracking:

@@ -16,6 +16,7 @@ from scenarios.measures.predictions.forecast import NEAR, PhaseForecast, forecas
 from scenarios.measures.predictions.remarks import remarks
 from scenarios.report.cells import NO_PREDICTION, digits, place
 from scenarios.report.closed_forms import print_closed_forms
+from scenarios.report.course import print_course
 from scenarios.terminal import new_table, print_table
 
 
@@ -33,6 +34,7 @@ def print_experiment(console: Console, experiment: Experiment, seed: int) -> Non
         _print_forecast(console, experiment, predicted)
     else:
         console.print(f"\n{NO_PREDICTION}")
+    print_course(console, experiment, start)
     print_closed_forms(console, experiment, start)
     for remark in remarks(experiment, seed):
         console.print(escape(remark), style="bold")
@@ -82,7 +84,7 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
     graph = target.graph
     rates, late = decay_rates(target), expected_late_rates(experiment, start)
     margins = collision_margins(target, start, end)
-    at_rest = len(experiment.phases) == 1 and not any(experiment.phases[0].velocity)
+    at_rest = len(experiment.phases) == 1 and not experiment.phases[0].moving
     still = at_rest and experiment.predicted  # the premise of Lemma 3
     table = new_table(
         "agent",

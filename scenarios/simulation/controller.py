@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from formation import Phase, SequentialActivation
+from formation.laws.feedforward import FeedForward
+from formation.plane import as_vectors
 from robots.instruments import Disturbance
 from robots.own_motion import OwnMotion, Sensed
 from scenarios.definition.experiment import Experiment
@@ -39,6 +41,10 @@ class Controller:
         self._commanded = np.zeros(2)
         self._velocity: Real | None = None
         self._delta: Real | None = None
+        self._feedforward = FeedForward(experiment.target) if experiment.scenario.law.feedforward else None
+        self._phase = experiment.phases[0]
+        self._clock = self._begin = 0.0
+        self._rate = 0j
         self.guard = make_guard(experiment, batch)
         scenario = experiment.scenario
         table = scenario.sensor
@@ -57,7 +63,8 @@ class Controller:
             self._velocity = np.zeros((*batch, experiment.n, 2))
 
     def begin_phase(self, phase: Phase) -> None:
-        """Take the commands of a phase."""
+        """Take the commands of a phase, from its begin."""
+        self._phase, self._clock, self._rate = phase, 0.0, 0j
         self._commanded = np.array(phase.velocity)
         self._delta = None if phase.delta is None else np.array(phase.delta)
         if self._estimator is None:
@@ -65,6 +72,8 @@ class Controller:
 
     def begin_period(self, points: Real, headings: Real, period: float) -> None:
         """Do what happens once per control period: draw noise, exchange estimates of v_r, activate followers."""
+        self._begin, self._clock = self._clock, self._clock + period
+        self._take_reference(0.0)
         self._own_motion.begin_period(points, headings, period, self._generators)
         draws = [draw for rng in self._generators if (draw := self._instruments.draw(rng)) is not None]
         self._disturbance = Disturbance.stack(draws, self._batch) if draws else None
@@ -76,7 +85,8 @@ class Controller:
         if self._activation is not None:
             self._activation.update(self._feedback(self._own_motion.sense(points, headings)))
 
-    def __call__(self, points: Real, headings: Real) -> Real:
+    def __call__(self, points: Real, headings: Real, elapsed: float) -> Real:
+        self._take_reference(elapsed)
         sensed = self._own_motion.sense(points, headings)
         feedback = self._feedback(sensed)
         if self._activation is not None:
@@ -87,6 +97,19 @@ class Controller:
         common = (velocity * self._compass(sensed.headings)).view(np.float64)
         return feedback + common if self.guard is None else self.guard(sensed, feedback, common)
 
+    def _take_reference(self, elapsed: float) -> None:
+        """What agents are told so many seconds into the period, where that changes during a phase."""
+        reference = self._phase.reference
+        if reference is None:
+            return
+        t = self._begin + elapsed
+        self._commanded = as_vectors(reference.velocity(t))
+        if self._phase.displacement is not None:
+            self._delta = as_vectors(self._phase.displacement * reference.factor(t))
+        self._rate = complex(reference.rate(t))
+        if self._estimator is None:
+            self._velocity = self._commanded
+
     def _feedback(self, sensed: Sensed) -> Real:
         """The law's own velocities, without v_r."""
         disturbance = self._disturbance
@@ -95,6 +118,8 @@ class Controller:
         )
         compass = self._compass(sensed.headings).view(np.float64) if self._law.needs_compass else None
         feedback = self._law(*measured, compass, self._delta)
+        if self._feedforward is not None and self._rate != 0.0:
+            feedback += self._feedforward(measured[0], self._rate)
         if disturbance is not None and disturbance.lost is not None:
             self._hold_still(feedback, disturbance.lost)
         return feedback

@@ -26,7 +26,7 @@ def test_control_step_of_1000_robots_beside_the_solver_alone(
     law = AngleLaw(TargetFormation(graph, rng.uniform(-5.0, 5.0, (n, 2))))
     sensor = RelativePositionSensor(graph.edges)
 
-    def control(points: np.ndarray, headings: np.ndarray) -> np.ndarray:
+    def control(points: np.ndarray, headings: np.ndarray, elapsed: float) -> np.ndarray:
         return law(sensor.measure(points, headings))
 
     whole, bare = [], []

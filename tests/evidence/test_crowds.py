@@ -40,7 +40,7 @@ def swap(seed: int, radius: float, obstacles: tuple[Obstacle, ...], seconds: flo
     world = make_world("pymunk", start, theta, nid=NID, robot=GTERNAL, arena=arena)
     safety = make_filter("decentralised", (N,), GTERNAL.drive, NID, FilterSettings(), arena)
 
-    def controller(points: np.ndarray, headings: np.ndarray) -> np.ndarray:
+    def controller(points: np.ndarray, headings: np.ndarray, elapsed: float) -> np.ndarray:
         away = -start - points
         away *= np.minimum(1.0, 0.2 / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-9))
         body = (away.view(np.complex128) * np.conj(headings.view(np.complex128))).view(np.float64)

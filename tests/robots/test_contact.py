@@ -26,7 +26,7 @@ def drive(contact: Contact, *twists: tuple[float, float], periods: int) -> None:
     """Command constant twists (v, omega), one per robot."""
     velocity = NID.velocity(np.array(twists))
     for _ in range(periods):
-        contact.step(lambda points, headings: velocity, PERIOD)
+        contact.step(lambda points, headings, _: velocity, PERIOD)
 
 
 def arc(pose: np.ndarray, v: float, omega: float, time: float) -> np.ndarray:
@@ -85,7 +85,7 @@ def test_a_robot_yields_to_a_push_beyond_its_traction_and_to_no_weaker_one(
     for _ in range(30):
         axle = body.local_to_world((-CHASSIS.centre_offset, 0.0))
         body.apply_force_at_world_point(tuple(force.tolist()), axle)  # the solver clears it after each step
-        contact.step(lambda points, headings: np.zeros((1, 2)), PERIOD)
+        contact.step(lambda points, headings, _: np.zeros((1, 2)), PERIOD)
     moved = np.linalg.norm(contact.poses[0, :2])
     assert moved > 0.05 if yields else moved < 1e-6
 
@@ -97,7 +97,7 @@ def test_a_robot_turns_under_a_torque_beyond_its_tyres_and_under_no_weaker_one(s
     limit = CHASSIS.traction_limit * GTERNAL.drive.base_length / 2.0
     for _ in range(30):
         body.torque = share * limit
-        contact.step(lambda points, headings: np.zeros((1, 2)), PERIOD)
+        contact.step(lambda points, headings, _: np.zeros((1, 2)), PERIOD)
     turned = abs(contact.poses[0, 2])
     assert turned > 0.05 if yields else turned < 1e-6
 

@@ -19,7 +19,7 @@ def test_the_arc_in_closed_form_is_the_limit_of_fine_integration(
     v: float, omega: float, theta: float, period: float
 ) -> None:
     unicycle = Unicycle(np.array([[0.1, -0.2, theta]]), NID, GTERNAL.drive)
-    unicycle.step(lambda points, headings: np.array([[v, omega * NID.projection_distance]]), period)
+    unicycle.step(lambda points, headings, _: np.array([[v, omega * NID.projection_distance]]), period)
     fine = 4000
     h = period / fine
     middle = theta + omega * h * (np.arange(fine) + 0.5)
@@ -43,7 +43,7 @@ def end_of_linear_flow(period: float) -> complex:
     """p(1) of dp/dt = (-1 + 2i) p, p(0) = 1."""
     world = SingleIntegrator(np.array([[1.0, 0.0]]), np.array([0.0]))
     for _ in range(round(1.0 / period)):
-        world.step(lambda p, headings: ((-1 + 2j) * p.view(np.complex128)).view(np.float64), period)
+        world.step(lambda p, headings, _: ((-1 + 2j) * p.view(np.complex128)).view(np.float64), period)
     return complex(*world.points[0])
 
 
@@ -55,7 +55,7 @@ def test_the_single_integrator_converges_with_order_four() -> None:
 
 def test_a_command_in_a_points_own_frame_moves_it_along_that_frame() -> None:
     world = SingleIntegrator(np.zeros((2, 2)), np.array([0.0, np.pi / 2.0]))
-    world.step(lambda points, headings: np.array([[1.0, 0.0], [1.0, 0.0]]), 0.5)
+    world.step(lambda points, headings, _: np.array([[1.0, 0.0], [1.0, 0.0]]), 0.5)
     np.testing.assert_allclose(world.points, [[0.5, 0.0], [0.0, 0.5]], atol=1e-15)
 
 
@@ -64,7 +64,7 @@ def test_a_batch_equals_its_single_runs(plant: str) -> None:
     rng = np.random.default_rng(0)
     points, theta = rng.normal(size=(3, 2, 5, 2)), rng.uniform(-3.0, 3.0, (3, 2, 5))
 
-    def attract(points: np.ndarray, headings: np.ndarray) -> np.ndarray:
+    def attract(points: np.ndarray, headings: np.ndarray, elapsed: float) -> np.ndarray:
         return -points + 0.3 * headings
 
     def run(points: np.ndarray, theta: np.ndarray) -> np.ndarray:
@@ -88,7 +88,7 @@ def test_the_saturated_unicycle_is_the_unicycle_until_a_wheel_meets_its_limit(li
     def end(plant: str) -> np.ndarray:
         world = make_world(plant, *start, nid=NID, robot=robot)
         for _ in range(20):
-            world.step(lambda points, headings: -points, 0.033)
+            world.step(lambda points, headings, _: -points, 0.033)
         return world.poses
 
     assert np.allclose(end("unicycle"), end("saturated"), atol=1e-12) == agrees
@@ -96,7 +96,7 @@ def test_the_saturated_unicycle_is_the_unicycle_until_a_wheel_meets_its_limit(li
 
 def test_headings_count_whole_turns() -> None:
     world = Unicycle(np.zeros((1, 3)), NID, GTERNAL.drive)
-    spin: Callable[[np.ndarray, np.ndarray], np.ndarray] = lambda points, headings: np.array([[0.0, 0.025]])  # noqa: E731
+    spin: Callable[[np.ndarray, np.ndarray], np.ndarray] = lambda points, headings, _: np.array([[0.0, 0.025]])  # noqa: E731
     for _ in range(20):
         world.step(spin, 1.0)
     assert world.poses[0, 2] == pytest.approx(20.0)

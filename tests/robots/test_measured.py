@@ -40,7 +40,7 @@ def world(model: MeasuredModel | None, plant: str = "saturated", seed: int = 0, 
 def driven(body: World, v: float, omega: float, periods: int) -> World:
     velocity = np.tile([v, NID.projection_distance * omega], (body.poses.shape[-2], 1))
     for _ in range(periods):
-        body.step(lambda points, headings: velocity, CONTROL_PERIOD)
+        body.step(lambda points, headings, _: velocity, CONTROL_PERIOD)
     return body
 
 
@@ -155,7 +155,7 @@ def test_a_batch_moves_its_runs_as_they_move_alone() -> None:
     stacked = np.stack([points, points]), np.stack([theta, theta])
     batch = make_world("saturated", *stacked, nid=NID, robot=GTERNAL, measured=MEASURED, generators=generators)
 
-    def controller(points: Real, headings: Real) -> Real:
+    def controller(points: Real, headings: Real, elapsed: float) -> Real:
         return np.broadcast_to(np.array([0.08, 0.01]), points.shape)
 
     alone = []

@@ -105,7 +105,7 @@ def test_a_robot_that_drives_at_an_obstacle_is_stopped_and_the_verdict_says_so()
     world = make_world("pymunk", np.zeros((1, 2)), np.zeros(1), nid=NID, robot=GTERNAL, arena=arena)
     poses = [world.poses.copy()]
     for _ in range(120):
-        world.step(lambda p, h: np.array([[0.15, 0.0]]), 0.033)
+        world.step(lambda p, h, _: np.array([[0.15, 0.0]]), 0.033)
         poses.append(world.poses.copy())
     front = world.points[0, 0] + GTERNAL.chassis.length / 2.0
     assert front == pytest.approx(0.3, abs=0.003)

@@ -47,7 +47,7 @@ def test_a_robot_that_drives_at_another_takes_exactly_its_half_of_the_barrier(
     normal = in_body(away, theta_i)
     row = -SETTINGS.gain * (distance**2 - SETTINGS.safe_distance**2) / (4.0 * distance)
     assume(abs(normal @ (u[0] - common[0]) - row) < 1e-9)  # else the wheels' limits alone hold it back
-    plant.step(lambda p, h: u, TINY)
+    plant.step(lambda p, h, _: u, TINY)
     h = [((p[0] - p[1]) ** 2).sum() - SETTINGS.safe_distance**2 for p in (points, plant.points)]
     assert (h[1] - h[0]) / TINY == pytest.approx(-SETTINGS.gain * h[0] / 2.0, abs=1e-6)
 
@@ -68,7 +68,7 @@ def test_a_robot_takes_all_of_the_barrier_of_a_thing(theta: float, along: float,
     u = safety.filter(plant.points, plant.headings, feedback, np.zeros((1, 2)), PERIOD)
     room = distance - SETTINGS.clearance
     assume(abs(in_body(1j, theta) @ u[0] + SETTINGS.gain * room) < 1e-9)
-    plant.step(lambda p, h: u, TINY)
+    plant.step(lambda p, h, _: u, TINY)
     assert (plant.points[0, 1] - distance) / TINY == pytest.approx(-SETTINGS.gain * room, abs=1e-5)
 
 
@@ -107,7 +107,7 @@ def test_a_crowd_that_drives_at_random_never_comes_closer_than_the_sampling_allo
     for step in range(60):
         if step % 10 == 0:
             feedback = rng.normal(0.0, 0.3, (9, 2))
-        plant.step(lambda p, h, g=feedback: safety.filter(p, h, g, np.zeros((9, 2)), PERIOD), PERIOD)
+        plant.step(lambda p, h, _, g=feedback: safety.filter(p, h, g, np.zeros((9, 2)), PERIOD), PERIOD)
         assert separation(plant.points[None]).distance[0] >= least
 
 

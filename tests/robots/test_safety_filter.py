@@ -172,7 +172,7 @@ def test_a_robot_in_a_notch_gets_out_on_the_right_when_the_left_leads_deeper_int
     safety = build((3,))
     safety.stuck[0] = 4.0
 
-    def controller(points: np.ndarray, headings: np.ndarray) -> np.ndarray:
+    def controller(points: np.ndarray, headings: np.ndarray, elapsed: float) -> np.ndarray:
         away = 0.6 * (goal - points)
         body = (away.view(np.complex128) * np.conj(headings.view(np.complex128))).view(np.float64)
         return safety.filter(points, headings, body, np.zeros((3, 2)), PERIOD)

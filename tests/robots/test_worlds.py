@@ -14,11 +14,11 @@ def world(plant: str, points: np.ndarray = POINTS, theta: np.ndarray = THETA) ->
     return make_world(plant, points, theta, nid=NID, robot=GTERNAL)
 
 
-def stand(points: np.ndarray, headings: np.ndarray) -> np.ndarray:
+def stand(points: np.ndarray, headings: np.ndarray, elapsed: float) -> np.ndarray:
     return np.zeros_like(points)
 
 
-def forward(points: np.ndarray, headings: np.ndarray) -> np.ndarray:
+def forward(points: np.ndarray, headings: np.ndarray, elapsed: float) -> np.ndarray:
     return np.zeros_like(points) + [0.1, 0.0]
 
 
@@ -53,7 +53,7 @@ def test_forward_is_along_the_robots_own_heading(plant: str) -> None:
 def test_points_headings_and_poses_tell_the_same_state(plant: str) -> None:
     w = world(plant)
     for k in range(20):
-        w.step(lambda points, headings, k=k: 0.1 * np.sin(points * 9.0 + k), 0.033)
+        w.step(lambda points, headings, _, k=k: 0.1 * np.sin(points * 9.0 + k), 0.033)
     theta = w.poses[:, 2]
     np.testing.assert_allclose(w.headings, np.stack([np.cos(theta), np.sin(theta)], axis=-1), atol=1e-15)
     expected = w.poses[:, :2] if plant == "single_integrator" else NID.project(w.poses)
@@ -64,7 +64,7 @@ def test_points_headings_and_poses_tell_the_same_state(plant: str) -> None:
 def test_no_wheel_turns_faster_than_its_limit(plant: str) -> None:
     w = world(plant)
     for _ in range(10):
-        w.step(lambda points, headings: np.full_like(points, 3.0), 0.033)
+        w.step(lambda points, headings, _: np.full_like(points, 3.0), 0.033)
         assert np.abs(w.wheel_speeds).max() == pytest.approx(GTERNAL.drive.wheel_speed_limit)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from formation import decay_rates
 from scenarios.definition.experiment import Experiment
+from scenarios.measures.predictions.course import too_fast
 from scenarios.measures.predictions.misfits import misfits, start_misfits
 
 LEAST_EXPONENT = 1.0
@@ -21,7 +22,11 @@ def remarks(experiment: Experiment, seed: int) -> list[str]:
     """One sentence for each thing that speaks against the run with that seed; `show`, `run` and `export` print them."""
     points, headings = experiment.starts.draw(np.random.default_rng(seed))
     told = [*start_misfits(experiment, points, headings), *misfits(experiment, points)]
-    return [*(f"does not fit: {misfit}" for misfit in told), *(f"too slow: {slow}" for slow in _slow(experiment))]
+    return [
+        *(f"does not fit: {misfit}" for misfit in told),
+        *(f"too slow: {slow}" for slow in _slow(experiment)),
+        *(f"too fast: {fast}" for fast in too_fast(experiment, points)),
+    ]
 
 
 def _slow(experiment: Experiment) -> Iterator[str]:

@@ -24,12 +24,13 @@ def has_closed_loop(experiment: Experiment) -> bool:
 
 
 def moves_exactly(experiment: Experiment) -> bool:
-    """Whether ideal agents move as :func:`motion` says: all active at once, v_r known to all, nothing delayed."""
+    """Whether ideal agents move as :func:`motion` says: constant phases, all active, v_r known to all, no delay."""
     scenario = experiment.scenario
     return (
         has_closed_loop(experiment)
         and scenario.law.activation == "simultaneous"
         and experiment.estimator is None
+        and experiment.phases[0].reference is None
         and not scenario.sensor.delay_periods
     )
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from robots import ROBOTARIUM_FLOOR, Arena, RobotModel
 from scenarios.definition.experiment import Experiment
-from scenarios.measures.tracking import predicted_ends
+from scenarios.measures.tracking import following, predicted_ends
 from scenarios.recording.piece import Index, Piece, Real
 from scenarios.recording.recorder import Recorder
 from scenarios.recording.views import style
@@ -33,6 +33,9 @@ BACKDROP = (FLOOR, TESTBED, GRID, TICKS)
 
 RING = 0.04
 """Radius of the ring at a predicted place, metres."""
+
+GHOST_PERIODS = 10
+"""Control periods between two places of a ghost that moves."""
 
 FILL = 0.01
 """Half the width of the strokes that fill a chassis, metres."""
@@ -171,11 +174,15 @@ def shade_trails(recorder: Recorder, n: int) -> None:
 
 
 def prediction(recorder: Recorder, piece: Piece) -> None:
-    """The end configuration that the theory predicts for the phase under way, as a ghost; none for an own law."""
+    """Where theory sees the phase under way end, as a ghost, which moves on a reference; none for an own law."""
     if not piece.experiment.predicted:
         return
-    rows = piece.changes(piece.trajectory.phase)
-    ends = predicted_ends(piece.experiment, piece.start)[piece.trajectory.phase[rows]]
+    if piece.experiment.phases[0].reference is None:
+        rows = piece.changes(piece.trajectory.phase)
+        ends = predicted_ends(piece.experiment, piece.start)[piece.trajectory.phase[rows]]
+    else:
+        rows = np.arange(0, len(piece.t), GHOST_PERIODS)
+        ends = following(piece.experiment, piece.start, piece.t[rows])
     observer, observed = piece.experiment.graph.edges.T
     turn = np.linspace(0.0, 2.0 * np.pi, 25)
     rings = ends[:, :, None] + RING * np.stack([np.cos(turn), np.sin(turn)], axis=-1)

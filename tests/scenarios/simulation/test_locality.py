@@ -31,13 +31,13 @@ def test_a_command_is_unchanged_when_every_state_that_its_robot_does_not_sense_i
     rng = np.random.default_rng(0)
     theta = rng.uniform(-np.pi, np.pi, experiment.n)
     points, headings = experiment.initial_points(0), np.stack([np.cos(theta), np.sin(theta)], axis=-1)
-    whole = command(points, headings)
+    whole = command(points, headings, 0.0)
     for k in range(experiment.n):
         edges = experiment.graph.edges
         seen = np.isin(np.arange(experiment.n), [k, *edges[edges[:, 0] == k, 1]])[:, None]
         own = (np.arange(experiment.n) == k)[:, None]
         with np.errstate(invalid="ignore"):  # the bearing of poison
-            alone = command(np.where(seen, points, np.nan), np.where(own, headings, np.nan))
+            alone = command(np.where(seen, points, np.nan), np.where(own, headings, np.nan), 0.0)
         assert (alone[k] == whole[k]).all()
         assert np.isfinite(alone[k]).all()
 
@@ -49,7 +49,7 @@ def test_a_command_does_change_when_a_sensed_neighbour_moves(shape: Experiment) 
     for k, i in shape.graph.edges[1:]:
         moved = shape.initial_points(0).copy()
         moved[i] += 0.1
-        assert (command(moved, headings)[k] != command(shape.initial_points(0), headings)[k]).any()
+        assert (command(moved, headings, 0.0)[k] != command(shape.initial_points(0), headings, 0.0)[k]).any()
 
 
 @pytest.mark.parametrize("first_follower", LAWS)

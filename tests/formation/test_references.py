@@ -1,0 +1,140 @@
+"""References: their derivatives, and the feed-forward that makes the angle law exact on them."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from formation import AngleLaw, SensingGraph, TargetFormation
+from formation.analysis.lags import turning_gains
+from formation.laws.feedforward import FeedForward, places
+from formation.plane import as_complex, as_vectors
+from formation.references.curves import CURVES, ClosedCurve, curve_length
+from formation.references.lag import settled, shape_residual
+from formation.references.protocol import Reference, pair_displacement
+from formation.references.way_points import WayPoints
+
+STEP = 1e-5
+TARGET = TargetFormation(
+    SensingGraph(np.array([[0, 1], [1, 2], [0, 3], [0, 3]])),
+    np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.5, -0.5), (-0.5, 1.5)]),
+)
+WAY = WayPoints(
+    np.array([0.0, 7.0, 15.0, 20.0]),
+    np.array([0.0, 1.0, 1.0 + 1.0j, 2.0j]),
+    np.array([1.0, 0.6, 0.6, 1.4]),
+    np.array([0.0, 0.5, -1.0, 7.0]),
+)
+
+curves = st.builds(
+    ClosedCurve,
+    st.sampled_from(sorted(CURVES)),
+    st.tuples(st.floats(0.2, 2.0), st.floats(0.2, 2.0)),
+    st.floats(10.0, 100.0),
+    st.floats(-4.0, 4.0),
+    st.booleans(),
+    st.booleans(),
+)
+
+
+@given(curves | st.just(WAY), st.floats(0.1, 19.9))
+def test_velocity_and_rate_are_the_derivatives_of_path_and_factor(reference: Reference, t: float) -> None:
+    ends = np.array([t - STEP, t + STEP])
+    velocity = np.diff(reference.path(ends))[0] / (2.0 * STEP)
+    rate = np.diff(np.log(reference.factor(ends) / reference.factor(t)))[0] / (2.0 * STEP)
+    assert abs(velocity - reference.velocity(t)) < 1e-6
+    assert abs(rate - reference.rate(t)) < 1e-6
+    assert reference.path(0.0) == 0.0
+    assert abs(reference.factor(0.0) - 1.0) < 1e-15
+
+
+@given(curves, st.floats(0.0, 50.0))
+def test_a_closed_curve_repeats_after_one_round(reference: ClosedCurve, t: float) -> None:
+    for what in (reference.path, reference.velocity, reference.factor, reference.rate):
+        assert abs(what(t) - what(t + reference.period)) < 1e-9
+
+
+@given(curves, st.floats(0.0, 50.0))
+def test_a_formation_that_turns_with_the_path_keeps_the_velocity_in_one_direction_of_its_own(
+    curve: ClosedCurve, t: float
+) -> None:
+    if curve.turning:
+        seen = curve.velocity(np.array([0.0, t])) / curve.factor(np.array([0.0, t]))
+        assert abs(np.angle(seen[1] / seen[0])) < 1e-9
+
+
+def test_way_points_are_passed_at_their_times_and_both_ends_are_at_rest() -> None:
+    times = np.array([0.0, 7.0, 15.0, 20.0])
+    np.testing.assert_allclose(WAY.path(times), [0.0, 1.0, 1.0 + 1.0j, 2.0j], atol=1e-14)
+    np.testing.assert_allclose(np.abs(WAY.factor(times)), [1.0, 0.6, 0.6, 1.4], atol=1e-14)
+    still = np.array([0.0, 20.0, 30.0])
+    assert np.abs([WAY.velocity(still), WAY.rate(still)]).max() < 1e-14
+    assert WAY.path(30.0) == WAY.path(20.0)
+
+
+def test_way_points_are_twice_continuously_differentiable() -> None:
+    for knot in (7.0, 15.0):
+        sides = np.array([knot - 2e-4, knot - 1e-4, knot + 1e-4, knot + 2e-4])
+        for what in (WAY.velocity, WAY.rate):
+            bends = np.diff(what(sides))[[0, 2]] / 1e-4
+            assert abs(bends[0] - bends[1]) < 1e-3
+
+
+@pytest.mark.parametrize("times", [[0.0], [1.0, 2.0], [0.0, 2.0, 2.0]])
+def test_times_that_do_not_begin_at_0_or_do_not_increase_are_refused(times: list[float]) -> None:
+    one = np.ones(len(times))
+    with pytest.raises(ValueError, match="times must begin with 0 and increase"):
+        WayPoints(np.array(times), one + 0j, one, one)
+
+
+def test_the_length_of_a_circle_is_pi_times_its_width() -> None:
+    assert curve_length("circle", (0.8, 0.8)) == pytest.approx(0.8 * np.pi, rel=1e-13)
+
+
+@given(st.floats(-0.5, 0.5), st.floats(-0.05, 0.05), st.floats(-3.0, 3.0), st.floats(0.2, 2.0), st.floats(-9.0, 9.0))
+def test_in_the_shape_law_and_feed_forward_give_each_agent_the_velocity_of_its_place(
+    omega: float, sigma: float, angle: float, size: float, frame: float
+) -> None:
+    mu, delta = complex(sigma, omega), size * np.exp(1j * angle)
+    p, turn = places(TARGET) * delta, np.exp(-1j * frame)
+    k, i = TARGET.graph.edges.T
+    relative = as_vectors((p[i] - p[k]) * turn)
+    u = as_complex(AngleLaw(TARGET)(relative) + FeedForward(TARGET)(relative, mu))
+    np.testing.assert_allclose(u, places(TARGET) * mu * delta * turn, atol=1e-12)
+
+
+@pytest.mark.parametrize("omega", [0.1, 0.2, 0.5])
+def test_on_a_circle_the_settled_lag_is_the_gain_of_the_cascade(omega: float) -> None:
+    y = settled(TARGET, ClosedCurve("circle", (0.6, 0.6), 2.0 * np.pi / omega), False)
+    t = np.arange(len(y)) * (2.0 * np.pi / omega / len(y))
+    np.testing.assert_allclose(y, np.exp(1j * omega * t)[:, None] * turning_gains(TARGET, omega), atol=1e-12)
+
+
+def test_with_feed_forward_and_continuous_commands_nothing_lags() -> None:
+    curve = ClosedCurve("figure-eight", (1.0, 0.5), 40.0)
+    y = settled(TARGET, curve, True)
+    assert shape_residual(TARGET, y).max() < 1e-12
+
+
+def test_the_residual_of_a_shape_is_blind_to_scale_place_and_turn() -> None:
+    shape = places(TARGET)
+    off = shape + np.array([0.0, 0.0, 0.1, 0.0, 0.0, 0.0])
+    assert shape_residual(TARGET, 3.0j * shape + 2.0) < 1e-15
+    assert shape_residual(TARGET, 3.0j * off + 2.0) == pytest.approx(float(shape_residual(TARGET, off)))
+    assert shape_residual(TARGET, off) > 0.01
+
+
+@pytest.mark.parametrize(
+    ("law", "told", "size", "turn"),
+    [
+        ("stationary", False, 0.5, 0.2), ("stationary", True, 0.25, 1.2), ("displacement", False, 1.0, 1.7),
+        ("distance", False, 1.0, 0.2), ("distance", True, 1.0, 1.2), ("bearing", False, 0.5, 1.7),
+        ("bearing", True, 0.25, 1.7),
+    ],
+)  # fmt: skip
+def test_what_a_first_follower_does_not_steer_stays_or_is_fed_forward(
+    law: str, told: bool, size: float, turn: float
+) -> None:
+    way = WayPoints(np.array([0.0, 9.0]), np.zeros(2) + 0j, np.array([2.0, 1.0]), np.array([0.0, 1.0]))
+    e = pair_displacement(way, 0.5 * np.exp(0.2j), 2.0 * np.exp(0.7j), law, told, 9.0)
+    assert abs(e - size * np.exp(1j * turn)) < 1e-12

@@ -1,0 +1,139 @@
+"""Formations on curves, from scenario files: exact with feed-forward, as far behind as predicted without."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from formation.plane import as_complex
+from formation.references.lag import shape_residual
+from scenarios.definition.experiment import Experiment, open_experiment
+from scenarios.definition.load import LIBRARY
+from scenarios.errors import InputError
+from scenarios.measures.predictions.course import course
+from scenarios.measures.tracking import reference
+from scenarios.simulation.loop import simulate
+
+IDEAL = "plant.name=single_integrator"
+
+
+def opened(name: str, *changes: str, omega: float = 0.2) -> Experiment:
+    return open_experiment(name, (IDEAL, f"reference.period_s={2.0 * np.pi / omega}", *changes), 80.0)
+
+
+def residual(experiment: Experiment, seconds: float = 0.0) -> float:
+    """The largest shape residual over the last seconds of a run."""
+    trajectory = simulate(experiment, 0)
+    late = trajectory.t >= trajectory.t[-1] - seconds
+    return float(shape_residual(experiment.target, as_complex(trajectory.points[late])).max())
+
+
+@pytest.mark.parametrize("omega", [0.1, 0.5])
+@pytest.mark.parametrize("name", ["circle", "figure-eight"])
+def test_without_a_compass_feed_forward_is_exact(name: str, omega: float) -> None:
+    assert residual(opened(name, "law.first_follower=stationary", omega=omega)) < 1e-12
+
+
+def test_a_displacement_first_follower_is_exact_up_to_the_fourth_power_of_the_step() -> None:
+    fine, coarse = (residual(opened("circle", f"plant.control_period_s={h}", omega=0.5)) for h in (0.04, 0.08))
+    assert fine < 1e-8
+    assert 14.0 < coarse / fine < 18.0
+
+
+@pytest.mark.parametrize(("name", "omega"), [("circle", 0.2), ("figure-eight", 0.2)])
+def test_without_feed_forward_the_lag_is_the_predicted_one(name: str, omega: float) -> None:
+    experiment = opened(name, "law.feedforward=false", omega=omega)
+    known = course(experiment, experiment.initial_points(0))
+    assert known is not None
+    assert known.lag is not None
+    assert residual(experiment, 2.0 * np.pi / omega) == pytest.approx(known.lag[0], rel=0.01)
+
+
+@pytest.mark.parametrize(("told", "within"), [("true", 0.15), ("false", 0.01)])
+def test_robots_that_hold_commands_lag_as_predicted(told: str, within: float) -> None:
+    experiment = opened("figure-eight", "plant.name=unicycle", "safety.filter=none", f"law.feedforward={told}")
+    known = course(experiment, experiment.initial_points(0))
+    assert known is not None
+    assert known.lag is not None
+    assert residual(experiment, 2.0 * np.pi / 0.2) == pytest.approx(known.lag[0], rel=within)
+
+
+def test_all_agents_end_where_the_reference_puts_them() -> None:
+    experiment = opened("figure-eight")
+    trajectory = simulate(experiment, 0)
+    np.testing.assert_allclose(trajectory.points[-1], reference(experiment, trajectory)[-1], atol=1e-7)
+
+
+def test_wheels_are_outrun_when_and_by_whom_it_is_told(tmp_path: Path) -> None:
+    text = (LIBRARY / "circle.toml").read_text(encoding="utf-8")
+    head, rest = text.split("[reference]")
+    _, rest = rest.split("[arena]")
+    points = 'kind = "way-points"\nfile = "way.csv"\ndisplacement_m = [0.4, 0.0]\n'
+    (tmp_path / "way.toml").write_text(f"{head}[reference]\n{points}\n[arena]{rest}", encoding="utf-8")
+    (tmp_path / "way.csv").write_text("t_s,x_m,y_m,turn_deg\n0,0,0,0\n40,0,0,0\n60,0.3,0,180\n80,0.5,0,540\n")
+    changes = ("plant.name=saturated", "safety.filter=none", "arena.walls=false")
+    experiment = open_experiment(str(tmp_path / "way.toml"), changes)
+    known = course(experiment, experiment.initial_points(0))
+    assert known is not None
+    assert known.outrun is not None
+    trajectory = simulate(experiment, 0)
+    limit = experiment.robot.drive.wheel_speed_limit
+    at_limit = np.abs(trajectory.wheel_speeds).max(axis=-1) >= limit * (1.0 - 1e-9)
+    row = int(np.flatnonzero(at_limit.any(axis=1) & (trajectory.t > 30.0))[0])
+    assert trajectory.t[row] == pytest.approx(known.outrun.time, abs=0.1)
+    assert np.flatnonzero(at_limit[row]).tolist() == [known.outrun.row]
+
+
+def test_a_file_of_way_points_is_the_scenario_with_these_points(tmp_path: Path) -> None:
+    text = (LIBRARY / "circle.toml").read_text(encoding="utf-8")
+    start, end = text.index("[reference]"), text.index("[arena]")
+    listed = "points = [{ t_s = 0, position_m = [0, 0] }, { t_s = 9, position_m = [1, 2], scale = 0.5, turn_deg = 30 }]"
+    digests = []
+    for name, points in (("listed", listed), ("filed", 'file = "way.csv"')):
+        table = f'[reference]\nkind = "way-points"\n{points}\n\n'
+        (tmp_path / f"{name}.toml").write_text(text[:start] + table + text[end:], encoding="utf-8")
+        (tmp_path / "way.csv").write_text("t_s, x_m, y_m, scale, turn_deg\n0, 0, 0, 1, 0\n\n9, 1, 2, 0.5, 30\n")
+        digests.append(open_experiment(str(tmp_path / f"{name}.toml")).file.sha256)
+    assert digests[0] == digests[1]
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("", "line 1: column t_s is missing"),
+        ("t_s,x_m,y_m,skale\n", "line 1: unknown column 'skale', did you mean 'scale'"),
+        ("t_s,x_m,y_m\n0,0\n", "line 2: expected 3 cells, got 2"),
+        ("t_s,x_m,y_m\n0,0,0\n1,here,0\n", "line 3: x_m: expected a number, got 'here'"),
+        ("t_s,x_m,y_m\n0,0,0\n", "times must begin with 0 and increase"),
+        ("t_s,x_m,y_m\n0,0,0\n1,nan,0\n", r"reference.points\[2\].position_m"),
+        (None, "cannot be read: No such file"),
+    ],
+)
+def test_a_file_that_holds_no_way_points_is_refused_with_its_place(
+    tmp_path: Path, content: str | None, message: str
+) -> None:
+    text = (LIBRARY / "circle.toml").read_text(encoding="utf-8")
+    table = '[reference]\nkind = "way-points"\nfile = "way.csv"\n\n'
+    start, end = text.index("[reference]"), text.index("[arena]")
+    (tmp_path / "way.toml").write_text(text[:start] + table + text[end:], encoding="utf-8")
+    if content is not None:
+        (tmp_path / "way.csv").write_text(content)
+    with pytest.raises(InputError, match=message):
+        open_experiment(str(tmp_path / "way.toml"))
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        (("reference.height_m=1.0",), "reference.height_m: a circle has its width alone"),
+        (("reference.kind=ellipse",), "reference.height_m: missing, the ellipse needs it"),
+        (("reference.speed_m_s=0.1",), "expected either period_s or speed_m_s, got both"),
+        (("reference.kind=way-points",), "reference.width_m: only for closed curves"),
+        (("reference.displacement_m=[0, 0]",), "reference.displacement_m: agents 1 and 2 must not"),
+        (("law.activation=sequential",), "law.feedforward: followers that wait cannot follow"),
+        (("law.name=displacement", "law.first_follower=stationary"), "law.feedforward: only for law.name"),
+    ],
+)
+def test_references_that_make_no_sense_are_refused(changes: tuple[str, ...], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        open_experiment("circle", changes)
