@@ -360,3 +360,57 @@ def test_the_example_converges_among_bodies_with_the_filter() -> None:
 def test_the_example_says_what_is_wrong_with_its_bound() -> None:
     with pytest.raises(InputError, match=r"bounded_angle_law\.py:\d+: BoundedAngleLaw\(target, v_max=0\) raised Value"):
         open_experiment("own-law", ("law.parameters.v_max=0",))
+
+
+BEARINGS = '''
+import numpy as np
+
+class MyLaw:
+    """Every agent goes against what is left of the wanted bearings across those that it measures."""
+
+    needs_compass, needs_handedness = True, True
+    measures = ("bearing",)
+    graph = "undirected"
+
+    def __init__(self, target):
+        self.k, i = target.graph.edges.T
+        e = target.positions[i] - target.positions[self.k]
+        self.wanted, self.n = e / np.linalg.norm(e, axis=1, keepdims=True), target.graph.n
+
+    def __call__(self, bearing, compass, delta):
+        c, s = compass[..., self.k, 0], compass[..., self.k, 1]
+        x, y = self.wanted.T
+        wanted = np.stack([c * x - s * y, s * x + c * y], axis=-1)
+        left = (bearing * wanted).sum(axis=-1, keepdims=True) * bearing - wanted
+        u = np.zeros((*bearing.shape[:-2], self.n, 2))
+        for agent in range(self.n):
+            u[..., agent, :] = left[..., self.k == agent, :].sum(axis=-2)
+        return u
+'''
+
+
+def test_an_own_law_may_measure_bearings_on_an_undirected_graph_and_is_audited_and_swept(
+    own: Callable[..., str], cli: Cli
+) -> None:
+    name = own(BEARINGS, f"{OWN}")
+    text = Path("mine.toml").read_text(encoding="utf-8")
+    Path("mine.toml").write_text(
+        text.replace("duration_s = 60.0", 'duration_s = 60.0\ngraph = "design"'), encoding="utf-8"
+    )
+    code, out, err = cli("audit", name, "--starts", "0")
+    assert (code, err) == (DONE, ""), out
+    assert "undirected, as declared" in out
+    assert "bearing: all used" in out
+    here = ("plant.name=single_integrator", "duration_s=3")
+    mine, built_in = (
+        simulate(open_experiment(name, (*here, *law)), range(3)).points
+        for law in ((), ('law={name="bearing-undirected"}',))
+    )
+    np.testing.assert_allclose(mine, built_in, atol=1e-9)
+    code, out, err = cli("sweep", name, "--seeds", "0:2", "--set", "duration_s=1", "--workers", "1")
+    assert (code, err) == (DONE, "")
+
+
+def test_a_kind_of_measurement_that_does_not_exist_is_named(own: Callable[..., str]) -> None:
+    with pytest.raises(InputError, match=r"MyLaw\.measures: no such kind 'bearings', did you mean 'bearing'"):
+        open_experiment(own(BEARINGS.replace('("bearing",)', '("bearings",)'), OWN), ('graph="design"',))
