@@ -12,6 +12,7 @@ __all__ = [
     "displacement",
     "distance",
     "edge_sum",
+    "feedforward",
     "first_follower",
     "laplacian",
     "persistent",

@@ -13,6 +13,7 @@ __all__ = [
     "keys",
     "load",
     "own_law",
+    "references",
     "schema",
     "starts",
     "targets",
