@@ -11,8 +11,8 @@ class InputError(ValueError):
     """Input that cannot be used. Its message is one line: file, field, value and what was expected."""
 
 
-def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """A clause that offers the nearest known name, or lists the known ones.
+def did_you_mean(name: str, known: Iterable[str], where: str | None = None) -> str:
+    """A clause that offers the nearest known name, or lists the known ones, or says where so many are listed.
 
     >>> did_you_mean("shpae", ["maneuver", "shape"])
     "did you mean 'shape'?"
@@ -21,7 +21,7 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     """
     options = list(known)
     close = difflib.get_close_matches(name, options, n=1, cutoff=0.6)
-    return f"did you mean {close[0]!r}?" if close else f"known: {', '.join(options)}"
+    return f"did you mean {close[0]!r}?" if close else where or f"known: {', '.join(options)}"
 
 
 def plain(text: str) -> str:

@@ -10,7 +10,7 @@ import re
 
 import numpy as np
 
-from formation import LAWS, SensingGraph, agents
+from formation import SensingGraph, agents
 from formation.design.candidates import Task, choose, propose
 from formation.design.field import Choice, Field
 from formation.design.subgraph import Remedy, free_remedy, remedy, subgraph
@@ -23,7 +23,7 @@ LEADERS = (1, 2)
 """Numbers of the leader and of the first follower where the scenario names none."""
 
 
-def chosen(path: str, scenario: Scenario) -> tuple[Scenario, tuple[int, ...] | None]:
+def chosen(path: str, scenario: Scenario, condition: str) -> tuple[Scenario, tuple[int, ...] | None]:
     """The scenario with agents 1..n in the order of the cascade, and their numbers in the file, row by row.
 
     None where the graph is given: then the file's numbers are the rows' already.
@@ -31,6 +31,7 @@ def chosen(path: str, scenario: Scenario) -> tuple[Scenario, tuple[int, ...] | N
     Args:
         path: of the scenario file, for messages.
         scenario: validated.
+        condition: on the sensing graph, that the law declares.
 
     Raises:
         InputError: no leader-first-follower graph is inside; the message names whom it cannot reach and what mends it.
@@ -39,9 +40,7 @@ def chosen(path: str, scenario: Scenario) -> tuple[Scenario, tuple[int, ...] | N
         if scenario.leaders is not None:
             raise InputError(f'{path}: leaders: only for graph = "subgraph" or "design"')
         return scenario, None
-    law = LAWS.get(scenario.law.name)
-    paper = scenario.law.name == "angle" or law is None or law.graph == LEADER_FIRST_FOLLOWER
-    if not paper:
+    if condition != LEADER_FIRST_FOLLOWER:
         if scenario.graph == "subgraph":
             raise InputError(f'{path}: graph: "subgraph" needs a law on a leader-first-follower graph')
         return scenario, None

@@ -26,6 +26,7 @@ from formation import (
     needs,
 )
 from formation.laws.base import ORIENTATION, SCALE
+from formation.laws.protocol import LEADER_FIRST_FOLLOWER
 from formation.measurements import ANGLE, RATIO
 from robots import GTERNAL, Arena, Imperfections, Instruments, NearIdentityDiffeomorphism, RobotModel
 from robots.measured import MeasuredModel
@@ -34,9 +35,9 @@ from robots.safety import FilterSettings
 from scenarios.definition.bounds import LONGEST_RUN, check_size
 from scenarios.definition.choice import chosen
 from scenarios.definition.files import robot_file
-from scenarios.definition.formations import Aim, build_aim, with_graph
+from scenarios.definition.formations import Aim, build_aim
 from scenarios.definition.load import ScenarioFile, load
-from scenarios.definition.own_law import NotLoaded, OwnFactory, check_parameters
+from scenarios.definition.own_law import NotLoaded, OwnFactory, check_parameters, condition
 from scenarios.definition.references import build_reference
 from scenarios.definition.schema import LawTable, Scenario
 from scenarios.definition.starts import Starts, build_starts
@@ -219,11 +220,12 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
         InputError: anything in the scenario that cannot be used, with file and field.
     """
     path = file.path
-    scenario, numbers = chosen(path, file.scenario)
+    needed = _needed(file)
+    scenario, numbers = chosen(path, file.scenario, needed)
     if duration is not None and not (np.isfinite(duration) and duration > 0.0):
         raise InputError(f"--duration: expected a positive number of seconds, got {duration:g}")
     check_size(path, scenario, duration)
-    aim = build_aim(path, scenario)
+    aim = build_aim(path, scenario, needed)
     with located(path, "robot"):
         robot = _robot(scenario)
         nid = NearIdentityDiffeomorphism(scenario.robot.projection_distance_m)
@@ -236,7 +238,7 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
     arena = _arena(path, scenario)
     phases = _phases(path, scenario, aim.formation, duration)
     own_gains = _own_gains(path, scenario, aim)
-    law, aim = _law(file, aim, phases, to_run, own_gains)
+    law = _law(file, aim, phases, to_run, own_gains)
     if scenario.law.activation == "sequential" and aim.formation is not aim.target:
         raise InputError(f"{path}: law.activation: 'sequential' needs a leader-first-follower graph")
     return Experiment(
@@ -301,18 +303,22 @@ def _filter_settings(path: str, scenario: Scenario) -> FilterSettings:
         )
 
 
-def _law(
-    file: ScenarioFile, aim: Aim, phases: tuple[Phase, ...], to_run: bool, own_gains: Real | None
-) -> tuple[FormationLaw, Aim]:
-    """The law, and the aim with the graph that it is made for, which an own law's file may decide."""
+def _needed(file: ScenarioFile) -> str:
+    """The condition on the sensing graph that the law declares, a key of ``formation.graph.conditions.CONDITIONS``."""
     table = file.scenario.law
     if table.name != "own":
-        return _built_in(file.path, table, aim, own_gains), aim
+        return LAWS[table.name].graph if table.name in LAWS else LEADER_FIRST_FOLLOWER
+    return LEADER_FIRST_FOLLOWER if file.law is None or table.factory is None else condition(file.law, table.factory)
+
+
+def _law(file: ScenarioFile, aim: Aim, phases: tuple[Phase, ...], to_run: bool, own_gains: Real | None) -> FormationLaw:
+    table = file.scenario.law
+    if table.name != "own":
+        return _built_in(file.path, table, aim, own_gains)
     if not to_run or file.law is None or table.factory is None:
-        return NotLoaded(), aim
+        return NotLoaded()
     factory = OwnFactory(file.path, file.law, table.factory, table.parameters)
-    aim = with_graph(file.path, file.scenario, aim, factory.graph)
-    return factory.make(aim.formation, phases[0].delta), aim
+    return factory.make(aim.formation, phases[0].delta)
 
 
 def _built_in(path: str, table: LawTable, aim: Aim, own_gains: Real | None) -> FormationLaw:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from formation import LAWS, AngleSet, DirectedGraph, Framework, SensingGraph, TargetFormation, agents
+from formation import AngleSet, DirectedGraph, Framework, SensingGraph, TargetFormation, agents
 from formation.graph.conditions import CONDITIONS
 from formation.graph.designs import design
 from formation.laws.protocol import LEADER_FIRST_FOLLOWER
@@ -35,18 +35,17 @@ class Aim:
     target_angles: Real
 
 
-def build_aim(path: str, scenario: Scenario) -> Aim:
+def build_aim(path: str, scenario: Scenario, condition: str) -> Aim:
     """The aim of a scenario.
 
     Args:
         path: of the scenario file, for messages.
         scenario: validated.
+        condition: on the sensing graph, that the law declares.
 
     Raises:
         InputError: a graph that is not of the kind that the law needs, and everything that makes no target.
     """
-    law = LAWS.get(scenario.law.name)
-    condition = None if law is None else law.graph
     if condition == LEADER_FIRST_FOLLOWER or scenario.random_formation is not None or not _others(scenario):
         target, angles, exact = build_target(path, scenario)
         given: Framework = target
@@ -56,10 +55,10 @@ def build_aim(path: str, scenario: Scenario) -> Aim:
             given = _given(path, scenario)
         angles = listed_angles(path, scenario, given) or AngleSet.of_places(given.positions)
         aim = Aim(given, None, angles, angles.measure(given.positions))
-    return aim if condition is None else with_graph(path, scenario, aim, condition)
+    return _with_graph(path, scenario, aim, condition)
 
 
-def with_graph(path: str, scenario: Scenario, aim: Aim, condition: str) -> Aim:
+def _with_graph(path: str, scenario: Scenario, aim: Aim, condition: str) -> Aim:
     """The aim with a sensing graph of the kind that a law needs: checked where it is given, built where it is designed.
 
     Raises:

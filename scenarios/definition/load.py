@@ -66,7 +66,8 @@ def find(scenario: str) -> Path:
     if scenario.endswith(".toml") or "/" in scenario:
         return Path(scenario)
     if scenario not in library():
-        raise InputError(f"scenario: no scenario named {scenario!r}, {did_you_mean(scenario, library())}")
+        near = did_you_mean(scenario, library(), "formation list shows the known ones")
+        raise InputError(f"scenario: no scenario named {scenario!r}, {near}")
     return LIBRARY / f"{scenario}.toml"
 
 

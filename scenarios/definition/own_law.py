@@ -115,6 +115,15 @@ class OwnLaw:
         return np.allclose(together, apart, rtol=0.0, atol=tolerance, equal_nan=True)
 
 
+def condition(file: LawFile, factory: str) -> str:
+    """The condition on the sensing graph that an own law declares, of the paper's kind where it says nothing.
+
+    Whom agents sense must be known before the law is made, and of a run that is only looked at; so it is read in the
+    file, which is not executed.
+    """
+    return file.literal(factory, "graph") or LEADER_FIRST_FOLLOWER
+
+
 class NotLoaded:
     """In place of the own law of a run that is read back: to look at a run, nothing of it is executed."""
 
@@ -134,7 +143,7 @@ class OwnFactory:
         parameters: of the factory, by name.
 
     Attributes:
-        graph: the condition on the sensing graph that the factory declares, of the paper's kind where it says nothing.
+        graph: the condition on the sensing graph that the factory declares; see :func:`condition`.
 
     Raises:
         InputError: any mistake in the file or the names.
@@ -148,7 +157,11 @@ class OwnFactory:
             known = did_you_mean(name, names) if names else "it has none at all"
             raise InputError(f"{scenario}: law.factory: {file.path} has no function or class {name!r}, {known}")
         check_parameters(scenario, name, make, parameters)
-        self.graph = str(getattr(make, "graph", LEADER_FIRST_FOLLOWER))
+        self.graph, has = condition(file, name), getattr(make, "graph", LEADER_FIRST_FOLLOWER)
+        if has != self.graph:
+            raise InputError(
+                f"{file.path}: {name}.graph: expected a literal text, got one that is computed: {has!r:.80}"
+            )
         self._file, self._name, self._make, self._parameters = file, name, make, parameters
 
     def make(self, target: Framework, delta: tuple[float, float] | None) -> OwnLaw:

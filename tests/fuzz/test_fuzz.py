@@ -7,9 +7,6 @@ import pytest
 from tests.fuzz.cases import try_case
 from tests.fuzz.drive import quick
 
-KNOWN_SLOW = ("scenario", 22)
-"""A finding that is still open: its command ends in order, but late."""
-
 FAST = {"scenario": 30, "run": 20, "option": 15}
 
 
@@ -19,6 +16,4 @@ def test_whatever_the_input_a_command_ends_in_order_and_refuses_in_one_line(
 ) -> None:
     with quick():
         arguments, wrong = try_case(kind, number, tmp_path)
-    if wrong is not None and (kind, number) == KNOWN_SLOW and wrong.startswith("too long"):
-        pytest.xfail("`show` of a large random formation needs more than 20 s of processor time since it tells noise")
     assert wrong is None, f"formation {arguments}\n{wrong}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import sys
 import traceback
@@ -55,6 +56,25 @@ class LawFile:
             raise self.failure("executing the file", error) from error
         return module
 
+    def literal(self, owner: str, name: str) -> str | None:
+        """The text that the class or function ``owner`` has as its attribute ``name``, read without executing anything.
+
+        None where the file gives it no literal text: in the class, in one of the file's classes that it stands on, or
+        as an assignment to ``owner.name``.
+        """
+        try:
+            body = ast.parse(self.source).body
+        except (SyntaxError, ValueError):  # what executing the file will tell
+            return None
+        classes = {node.name: node for node in body if isinstance(node, ast.ClassDef)}
+        waiting, found = [owner], None
+        while waiting and found is None:
+            node = classes.pop(waiting.pop(0), None)
+            if node is not None:
+                found = _assigned(node.body, name)
+                waiting = [base.id for base in node.bases if isinstance(base, ast.Name)] + waiting
+        return _assigned(body, f"{owner}.{name}") or found
+
     def failure(self, doing: str, error: BaseException) -> InputError:
         """What to raise for an exception of the user's code: its line, what was asked of it, and what it raised."""
         frames = traceback.extract_tb(error.__traceback__)
@@ -81,6 +101,19 @@ def read(scenario: str, folder: Path, name: str) -> LawFile:
     except (OSError, ValueError) as error:  # a path with a null byte
         reason = error.strerror if isinstance(error, OSError) else error
         raise InputError(f"{scenario}: law.file: {path} cannot be read: {reason}") from None
+
+
+def _assigned(body: list[ast.stmt], name: str) -> str | None:
+    """The literal text that the last assignment to ``name`` among statements gives it."""
+    found = None
+    for node in body:
+        targets = (
+            node.targets if isinstance(node, ast.Assign) else [node.target] if isinstance(node, ast.AnnAssign) else []
+        )
+        value = node.value if isinstance(node, ast.Assign | ast.AnnAssign) else None
+        if isinstance(value, ast.Constant) and isinstance(value.value, str):
+            found = value.value if name in map(ast.unparse, targets) else found
+    return found
 
 
 def _shortened(text: str) -> str:
