@@ -2,8 +2,10 @@
 
 import os
 import shutil
+import signal
 import sys
 import tempfile
+import threading
 import time
 import tomllib
 from collections.abc import Callable, Iterator
@@ -163,7 +165,12 @@ def target(request: pytest.FixtureRequest) -> Callable[[str, float, float, str],
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Leave on the PATH what `make install` brought and the shell: no test leans on a program of this machine."""
+    """Leave on the PATH what `make install` brought and the shell: no test leans on a program of this machine.
+
+    Nor on how it was started: a shell lets what it starts in the background ignore the keyboard's interrupt.
+    """
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     found = {name: shutil.which(name) for name in SHELL}
     tools = config.stash[TOOLS] = tempfile.TemporaryDirectory(prefix="tools-")
     for name, program in found.items():

@@ -271,7 +271,10 @@ def test_the_keyboard_interrupts_a_script_and_the_folder_is_kept(
         reader.start()
         assert eventually(lambda: "driving\n" in said, True)
         process.send_signal(signal.SIGINT)
-        assert process.wait(60) == 130
+        try:
+            assert process.wait(60) == 130
+        finally:
+            process.kill()
         reader.join()
     result = json.loads((tmp_path / "runs" / "mine-saturated-seed0" / "result.json").read_text())
     assert result["outcome"] == "interrupted"
