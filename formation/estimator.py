@@ -9,7 +9,7 @@ spanning tree rooted at the leader.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from formation import agents
 from formation.graph.sensing import Index
@@ -18,6 +18,9 @@ from formation.plane import Real
 
 class VelocityEstimator:
     """Estimates of v_r by consensus on a communication graph.
+
+    Attributes:
+        edges: (m, 2) as given.
 
     Args:
         n: number of agents.
@@ -42,6 +45,7 @@ class VelocityEstimator:
                 "the communication graph has no spanning tree rooted at the leader: "
                 f"{'agent' if lost.size == 1 else 'agents'} {named} cannot hear from it"
             )
+        self.edges = e
         weights = np.zeros((n, n))
         weights[e[:, 0], e[:, 1]] = 1.0
         weights[agents.LEADER] = 0.0
@@ -49,11 +53,26 @@ class VelocityEstimator:
         self._mean = weights / weights.sum(axis=1, keepdims=True)
         self._gain = gain
 
-    def step(self, estimates: Real, velocity: ArrayLike, period: float) -> Real:
-        """The estimates (..., n, 2), m/s, one period (seconds) later, while the leader holds ``velocity`` (2,)."""
+    def step(self, estimates: Real, velocity: ArrayLike, period: float, heard: NDArray[np.bool_] | None = None) -> Real:
+        """The estimates (..., n, 2), m/s, one period (seconds) later, while the leader holds ``velocity`` (2,).
+
+        ``heard`` (..., m) is which messages arrive along :attr:`edges`; all where absent. Who hears nobody keeps its
+        estimate.
+        """
         known = estimates.copy()
         known[..., agents.LEADER, :] = velocity
-        return known + (1.0 - np.exp(-self._gain * period)) * (self._mean @ known - known)
+        mean = self._mean if heard is None else self._mean_of(heard)
+        return known + (1.0 - np.exp(-self._gain * period)) * (mean @ known - known)
+
+    def _mean_of(self, heard: NDArray[np.bool_]) -> Real:
+        """(..., n, n) rows that average what each agent hears, or keep its own where it hears nobody."""
+        weights = np.zeros((*heard.shape[:-1], *self._mean.shape))
+        weights[..., self.edges[:, 0], self.edges[:, 1]] = heard
+        weights[..., agents.LEADER, :] = 0.0
+        count = weights.sum(axis=-1, keepdims=True)
+        alone = count == 0.0
+        mean: Real = (weights + alone * np.eye(len(self._mean))) / np.where(alone, 1.0, count)
+        return mean
 
 
 def unreachable(n: int, edges: Index) -> Index:

@@ -93,6 +93,7 @@ class Instruments:
     A lost edge gives NaN in all that it takes part in.
 
     Attributes:
+        edges: (m, 2) as given.
         imperfections: of the sensors.
 
     Args:
@@ -114,11 +115,15 @@ class Instruments:
     ) -> None:
         if unknown := [kind for kind in kinds if kind not in KINDS]:
             raise ValueError(f"measures must be among {', '.join(KINDS)}, got {unknown[0]!r}")
-        self._edges = np.asarray(edges, dtype=np.intp)
+        self.edges = np.asarray(edges, dtype=np.intp)
         self._first, self._second = np.asarray(corners, dtype=np.intp).reshape(-1, 2).T
-        self._kinds = tuple(kinds)
+        self._corners, self._kinds = corners, tuple(kinds)
         self.imperfections = imperfections or Imperfections()
-        self._places = RelativePositionSensor(self._edges, self.imperfections.position, self.imperfections.bearing)
+        self._places = RelativePositionSensor(self.edges, self.imperfections.position, self.imperfections.bearing)
+
+    def having(self, imperfections: Imperfections) -> Instruments:
+        """The same instruments with other imperfections."""
+        return Instruments(self.edges, self._corners, self._kinds, imperfections)
 
     def measure(self, points: Real, headings: Real, own: Real | None = None) -> Real:
         """(..., m, 2) true relative positions in body frames; see :class:`robots.sensors.RelativePositionSensor`."""
@@ -133,7 +138,7 @@ class Instruments:
         has = self.imperfections
         if has == Imperfections():
             return None
-        m, c = len(self._edges), len(self._first)
+        m, c = len(self.edges), len(self._first)
         relative = self._places.noise(rng)
         distance = rng.normal(0.0, has.distance, m) if has.distance else None
         angle = rng.normal(0.0, has.angle, c) if has.angle else None
@@ -142,7 +147,7 @@ class Instruments:
         if has.edge_loss or has.dropout:
             lost = rng.random(m) < has.edge_loss if has.edge_loss else np.zeros(m, dtype=bool)
             if has.dropout:
-                observer = self._edges[:, 0]
+                observer = self.edges[:, 0]
                 blind = rng.random(int(observer.max(initial=-1)) + 1) < has.dropout
                 lost = lost | blind[observer]
         return Disturbance(relative, distance, angle, ratio, lost)

@@ -96,6 +96,11 @@ class Obstacle:
         return np.concatenate([border, border[:1]])
 
 
+def standing(obstacles: Sequence[Obstacle], there: Sequence[bool]) -> tuple[Obstacle, ...]:
+    """The obstacles, and in the place of each that is not there one out of everything's reach."""
+    return tuple(one if stands else _ELSEWHERE for one, stands in zip(obstacles, there, strict=True))
+
+
 def disc(centre: tuple[float, float], radius: float) -> Obstacle:
     """A disc, metres."""
     return Obstacle(np.array([centre]), radius)
@@ -106,6 +111,9 @@ def pack(obstacles: Sequence[Obstacle]) -> tuple[Real, NDArray[np.int64], Real]:
     first = np.cumsum([0] + [len(o.vertices) for o in obstacles], dtype=np.int64)
     vertices = np.concatenate([o.vertices for o in obstacles]) if obstacles else np.empty((0, 2))
     return vertices, first, np.array([o.radius for o in obstacles], dtype=np.float64)
+
+
+_ELSEWHERE = disc((1e6, 1e6), 1.0)
 
 
 def _counter_clockwise(v: Real) -> Real:

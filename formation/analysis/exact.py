@@ -17,7 +17,7 @@ from itertools import count, islice
 import numpy as np
 
 from formation import agents
-from formation.analysis.cascade import Cascade
+from formation.analysis.cascade import Cascade, exponential
 from formation.analysis.first_follower import Motion, motion
 from formation.laws.first_follower import EDGE_LAWS
 from formation.maneuver import Phase
@@ -107,3 +107,38 @@ def held(cascade: Cascade, start: Complex, phase: Phase, first_follower: str, pe
 def points(states: Iterator[Complex], steps: int) -> Real:
     """(steps + 1, n, 2) the first states of one motion, metres."""
     return as_vectors(np.stack(list(islice(states, steps + 1))))
+
+
+def spread(cascade: Cascade, row: int, own: Complex, t: Real) -> Complex:
+    """(T, n) the errors that a stopped agent spreads down the cascade, at times t (T,), complex metres.
+
+    The loop is linear, so the errors e = p - p' that a stop makes, p' being the motion without it, obey the loop's own
+    equation for every agent but the stopped one, s, which stays where it was:
+
+        e_s(t) = p'_s(0) - p'_s(t),       de_k/dt = r_k [(1 - w_k) e_i + w_k e_j - e_k],   k != s,   e(0) = 0.
+
+    Of a formation that moves on at v_r, e_s = -v_r t. Once that has lasted, e_k = -(g_k t - h_k) v_r with g_s = 1,
+    h_s = 0, g_k = (1 - w_k) g_i + w_k g_j and h_k = (1 - w_k) h_i + w_k h_j + g_k / r_k: agents that sense s, directly
+    or not, are g_k times as far off as s is, less what they lag behind; nobody else notices.
+
+    Args:
+        cascade: the closed loop, with the first follower's own rate.
+        row: of the stopped agent.
+        own: (T,) its own error at these times, from 0 on; taken to be piecewise linear.
+        t: (T,) seconds, from the stop on.
+    """
+    n = cascade.n
+    loop = cascade.whole.copy()
+    loop[row] = 0.0
+    whole = np.zeros((n + 1, n + 1), dtype=np.complex128)  # the last component is the slope of e_s
+    whole[:n, :n], whole[row, n] = loop, 1.0
+    errors = np.zeros((len(t), n), dtype=np.complex128)
+    steps: dict[float, Complex] = {}
+    for k, h in enumerate(np.diff(t).tolist(), start=1):
+        if h not in steps:
+            norm = float(np.abs(whole * h).sum(axis=1).max())
+            steps[h] = exponential(lambda states, h=h: (whole @ states) * h, n + 1, norm)  # type: ignore[misc]
+        slope = (own[k] - own[k - 1]) / h
+        errors[k] = (steps[h] @ np.append(errors[k - 1], slope))[:n]
+        errors[k, row] = own[k]
+    return errors

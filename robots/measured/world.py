@@ -36,6 +36,14 @@ class Body(Protocol):
         """Advance by a period, seconds, at twists (..., n, 2) of the axles, m/s and rad/s."""
         ...
 
+    def push(self, displacement: Real) -> None:
+        """See :class:`robots.worlds.World`."""
+        ...
+
+    def stand(self, there: Sequence[bool]) -> None:
+        """See :class:`robots.worlds.World`."""
+        ...
+
 
 class Measured:
     """A world around a body; poses, points and headings are true, :attr:`seen` is what the cameras say.
@@ -88,6 +96,13 @@ class Measured:
         self._body.move(self._twist(self.rolled, normal[..., 4:], period), period)
         self._camera.take(self._body.poses, normal[..., :4], luck[..., 1], period)
         self._observe()
+
+    def push(self, displacement: Real) -> None:
+        self._body.push(displacement)
+        self._observe()
+
+    def stand(self, there: Sequence[bool]) -> None:
+        self._body.stand(there)
 
     def _twist(self, wheels: Real, normal: Real, period: float) -> Real:
         """(..., n, 2) of the axles, by each robot's own numbers and with its slip."""

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from robots.arena import Arena
 from robots.drive import DifferentialDrive
 from robots.nid import NearIdentityDiffeomorphism
+from robots.obstacles import Obstacle
 from robots.safety.barrier import WHEEL_MARGIN, FilterSettings, turn_weight
 from robots.safety.joint import Index, JointFilter, Rows, disturbed, things
 from robots.safety.protocol import Noise, Real
@@ -35,6 +38,10 @@ class CentralisedFilter(JointFilter):
         self._obstacles = () if arena is None else arena.obstacles
         self._codes = things(self._n, len(self._walls), len(self._obstacles))
         self._limit, self._weight = drive.speed_limit * (1.0 - WHEEL_MARGIN), turn_weight(drive, nid)
+
+    def avoid(self, obstacles: Sequence[Obstacle]) -> None:
+        """See :class:`robots.safety.SafetyFilter`."""
+        self._obstacles = tuple(obstacles)
 
     def _wish(self, law: Real, common: Real, frame: NDArray[np.complex128]) -> Real:
         directions, limit = self._wheels(frame)

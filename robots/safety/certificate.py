@@ -14,10 +14,13 @@ cut instead of the solution.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from robots.arena import ROBOTARIUM_FLOOR, Arena
+from robots.obstacles import Obstacle
 from robots.safety.joint import JointFilter, Rows, disturbed, things
 from robots.safety.protocol import WALLS, Noise, Real
 
@@ -68,6 +71,9 @@ class RobotariumCertificate(JointFilter):
         self._robot = np.repeat(np.arange(self._n), WALLS)
         self._side = np.tile(np.arange(WALLS), self._n)
         self._codes = things(self._n, WALLS, 0)[self._side]
+
+    def avoid(self, obstacles: Sequence[Obstacle]) -> None:
+        """It knows of none."""
 
     def _wish(self, law: Real, common: Real, frame: NDArray[np.complex128]) -> Real:
         return law + common

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from robots.arena import Arena
 from robots.drive import DifferentialDrive
 from robots.nid import NearIdentityDiffeomorphism
-from robots.obstacles import pack
+from robots.obstacles import Obstacle, pack
 from robots.safety import kernel
 from robots.safety.barrier import (
     STUCK_PROGRESS,
@@ -78,6 +80,10 @@ class DecentralisedFilter:
         self.stuck = np.zeros(shape)
         self._side = np.ones(batch)
         self._batch = batch
+
+    def avoid(self, obstacles: Sequence[Obstacle]) -> None:
+        """See :class:`robots.safety.SafetyFilter`."""
+        self._obstacles = pack(obstacles)
 
     def filter(
         self,

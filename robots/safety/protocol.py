@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
+
+from robots.obstacles import Obstacle
 
 Real = NDArray[np.float64]
 
@@ -63,6 +66,10 @@ class SafetyFilter(Protocol):
             period: seconds.
             noise: of the measurements; None for perfect sensors.
         """
+        ...
+
+    def avoid(self, obstacles: Sequence[Obstacle]) -> None:
+        """Take these obstacles, as many as before, in the place of the arena's; for filters that know of obstacles."""
         ...
 
 

@@ -66,6 +66,9 @@ class Contact:
         self._to_wheels = (robot.drive.to_wheels @ nid.to_twist).T
         self._to_twist = robot.drive.to_twist.T
         self.space = _space(self.poses, robot, arena)
+        self._obstacles = () if arena is None else _obstacles(self.space, arena, robot.chassis.body_friction)
+        self.space.add(*self._obstacles)
+        self._sliding = 2.0 * robot.chassis.traction_limit / robot.chassis.mass
         self.wheel_speeds = np.zeros((n, 2))
         self._row_of = {body.id: row for row, body in enumerate(list(self.space.bodies)[:n])}
         self._state, self._arbiters = batch.Buffer(), batch.Buffer()
@@ -100,6 +103,21 @@ class Contact:
         for _ in range(self._substeps):
             self.space.step(dt)
         self._observe()
+
+    def push(self, displacement: Real) -> None:
+        """The impulse at the centre of mass with which a body whose tyres slide, 2 mu g d = v^2, comes so far."""
+        distance = np.linalg.norm(displacement, axis=-1, keepdims=True)
+        speed = np.sqrt(self._sliding * distance)
+        direction = np.divide(displacement, distance, out=np.zeros_like(displacement), where=distance > 0.0)
+        self._command[: self._n, :2] += speed * direction
+
+    def stand(self, there: Sequence[bool]) -> None:
+        present = set(self.space.shapes)
+        for shape, stands in zip(self._obstacles, there, strict=True):
+            if stands and shape not in present:
+                self.space.add(shape)
+            elif shape in present and not stands:
+                self.space.remove(shape)
 
     def _observe(self) -> None:
         self._state.clear()
@@ -154,8 +172,6 @@ def _space(poses: Real, robot: RobotModel, arena: Arena | None) -> pymunk.Space:
         space.add(partner, pivot, gear)
     if arena is not None and arena.walls:
         space.add(*_walls(space, arena, chassis.body_friction))
-    if arena is not None and arena.obstacles:
-        space.add(*_obstacles(space, arena, chassis.body_friction))
     return space
 
 

@@ -5,6 +5,8 @@ All three accept any leading batch dimensions, so that many runs advance as one 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -45,6 +47,13 @@ class SingleIntegrator:
         self.points = p + (h / 6.0) * (k1 + 2.0 * (k2 + k3) + k4)
         self.poses[..., :2] = self.points
 
+    def push(self, displacement: Real) -> None:
+        self.points = self.points + displacement
+        self.poses[..., :2] = self.points
+
+    def stand(self, there: Sequence[bool]) -> None:
+        """Nothing stops a point."""
+
 
 class Unicycle:
     """Unicycles that follow every command: the NID map on exact arcs, without limits.
@@ -77,6 +86,13 @@ class Unicycle:
         self.poses[..., :2] += chord[..., None].view(np.float64)
         self.poses[..., 2] += turn
         self._observe()
+
+    def push(self, displacement: Real) -> None:
+        self.poses[..., :2] += displacement
+        self._observe()
+
+    def stand(self, there: Sequence[bool]) -> None:
+        """Nothing stops a body without mass."""
 
     def _limited(self, wheel_speeds: Real) -> Real:
         return wheel_speeds

@@ -5,7 +5,7 @@ velocities of the projected points as often as its integrator needs: a sampled p
 model of the theorem at every stage of its Runge-Kutta step, with the time of the stage.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -47,4 +47,15 @@ class World(Protocol):
 
     def step(self, controller: Controller, period: float) -> None:
         """Advance the state by one control period, seconds."""
+        ...
+
+    def push(self, displacement: Real) -> None:
+        """Push robots: (..., n, 2), metres, how far each would slide that nothing but its tyres stops.
+
+        Without mass, it is there at once.
+        """
+        ...
+
+    def stand(self, there: Sequence[bool]) -> None:
+        """Which of the arena's obstacles (O,) are there from now on; worlds without contact know of none."""
         ...

@@ -27,6 +27,9 @@ MOST_AGENTS = 5_000
 MOST_OBSTACLES = 1_000
 """Obstacles, and vertices of one."""
 
+MOST_EVENTS = 1_000
+"""Events of one run: each may split a control period."""
+
 LONGEST_RUN = 1_000_000
 """Control periods whose states are kept in memory; nine hours of the Robotarium's."""
 
@@ -62,6 +65,7 @@ def check_size(path: str, scenario: Scenario, duration: float | None) -> None:
         )
     robots = len(scenario.agents) or (scenario.random_formation.agents if scenario.random_formation else 0)
     vertices = sum(len(obstacle.vertices_m) for obstacle in scenario.obstacles)
+    vertices += sum(len(event.vertices_m or ()) for event in scenario.events)
     needed = robots * periods * (STATE_BYTES + VERTEX_BYTES * vertices)
     if not needed <= MOST_BYTES:
         among = f" among {vertices} vertices of obstacles" if vertices else ""

@@ -31,6 +31,11 @@ LATER_KEYS = (
     ("robot", "radius_spread"),
     ("reference",),
     ("law", "feedforward"),
+    ("law", "without_neighbour"),
+    ("communication", "message_loss"),
+    ("sensor", "sensing_range_m"),
+    ("sensor", "field_of_view_deg"),
+    ("events",),
 )
 """Keys that came after the first baselines: at their defaults they are not in a scenario's digest."""
 
@@ -55,5 +60,6 @@ def without_later_keys(data: dict[str, Any]) -> None:
         model: type[BaseModel] = Scenario
         for table in tables:
             place, model = place.get(table, {}), cast(type[BaseModel], model.model_fields[table].annotation)
-        if key in place and place[key] == model.model_fields[key].default:
+        default = model.model_fields[key].default
+        if key in place and place[key] == (list(default) if isinstance(default, tuple) else default):
             del place[key]

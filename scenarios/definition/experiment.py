@@ -25,6 +25,7 @@ from formation import (
     decay_rates,
     needs,
 )
+from formation.laws.another_pair import AnotherPairLaw
 from formation.laws.base import ORIENTATION, SCALE
 from formation.laws.protocol import LEADER_FIRST_FOLLOWER
 from formation.measurements import ANGLE, RATIO
@@ -34,12 +35,15 @@ from robots.obstacles import Obstacle
 from robots.safety import FilterSettings
 from scenarios.definition.bounds import LONGEST_RUN, check_size
 from scenarios.definition.choice import chosen
+from scenarios.definition.events.build import build_events, check_front
+from scenarios.definition.events.event import RESHAPE, Event
+from scenarios.definition.events.reshape import cut, reshaped
 from scenarios.definition.files import robot_file
 from scenarios.definition.formations import Aim, build_aim
 from scenarios.definition.load import ScenarioFile, load
 from scenarios.definition.own_law import NotLoaded, OwnFactory, check_parameters, condition
 from scenarios.definition.references import build_reference
-from scenarios.definition.schema import LawTable, Scenario
+from scenarios.definition.schema import LawTable, Scenario, SensorTable
 from scenarios.definition.starts import Starts, build_starts
 from scenarios.definition.targets import in_order
 from scenarios.errors import InputError, located
@@ -70,6 +74,8 @@ class Experiment:
         estimator: how agents learn v_r; None where it is broadcast.
         measured: the robots as logs and firmware show them; None for the data sheet's.
         asked_duration: seconds that replaced the scenario's own; None where none did.
+        events: what happens on the way, by time.
+        shapes: of each phase, the experiment with that phase's aim and law; empty where the shape never changes.
     """
 
     file: ScenarioFile
@@ -87,6 +93,8 @@ class Experiment:
     filter_settings: FilterSettings
     measured: MeasuredModel | None
     asked_duration: float | None = None
+    events: tuple[Event, ...] = ()
+    shapes: tuple[Experiment, ...] = ()
 
     @property
     def scenario(self) -> Scenario:
@@ -134,6 +142,16 @@ class Experiment:
     def target_angles(self) -> Real:
         """(m,) the angles' targets, radians, exact."""
         return self.aim.target_angles
+
+    def of_phase(self, index: int) -> Experiment:
+        """The experiment with the aim and the law of a phase, which are its own where the shape never changes."""
+        return self.shapes[index] if self.shapes else self
+
+    def targets(self, phase: NDArray[np.intp]) -> Real:
+        """The angles' targets, radians: (m,), or (T, m) of states in the phases (T,) where the shape changes."""
+        if not self.shapes:
+            return self.target_angles
+        return np.stack([each.target_angles for each in self.shapes])[phase]
 
     @property
     def n(self) -> int:
@@ -235,15 +253,19 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
         _check_rates(path, aim.target, scenario.plant.control_period_s)
     if scenario.law.feedforward:
         _check_feedforward(path, scenario, aim)
+    if scenario.sensor.field_of_view_deg is not None:
+        check_front(f"{path}: sensor.field_of_view_deg", scenario)
     arena = _arena(path, scenario)
-    phases = _phases(path, scenario, aim.formation, duration)
+    whom = numbers or tuple(range(1, aim.formation.graph.n + 1))
+    events = build_events(path, scenario, whom, aim.formation.graph)
+    phases, shapes = cut(_phases(path, scenario, aim.formation, duration), events)
     own_gains = _own_gains(path, scenario, aim)
     law = _law(file, aim, phases, to_run, own_gains)
     if scenario.law.activation == "sequential" and aim.formation is not aim.target:
         raise InputError(f"{path}: law.activation: 'sequential' needs a leader-first-follower graph")
-    return Experiment(
+    experiment = Experiment(
         file=file,
-        numbers=numbers or tuple(range(1, aim.formation.graph.n + 1)),
+        numbers=whom,
         aim=aim,
         starts=build_starts(path, scenario, aim.formation, arena),
         phases=phases,
@@ -253,11 +275,29 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
         instruments=_instruments(path, scenario, law, aim.formation.graph),
         nid=nid,
         robot=robot,
-        arena=arena,
+        arena=replace(arena, obstacles=(*arena.obstacles, *(each.obstacle for each in events if each.obstacle))),
         filter_settings=_filter_settings(path, scenario),
         measured=robot_file.measured(scenario, path),
         asked_duration=duration,
+        events=events,
     )
+    return experiment if not any(shapes) else replace(experiment, shapes=_shapes(experiment, shapes, to_run))
+
+
+def _shapes(first: Experiment, shapes: tuple[int, ...], to_run: bool) -> tuple[Experiment, ...]:
+    """Of each phase, the experiment with the aim and the law of the shape that it has, by the number of changes.
+
+    The angles that are compared stay those of the first shape; their targets change.
+    """
+    path, made = first.file.path, [first]
+    scenario = first.scenario
+    for event in (event for event in first.events if event.kind == RESHAPE):
+        scenario = reshaped(scenario, event.table)
+        label = replace(first.file, path=f"{path}: events[{event.number}]", scenario=scenario)
+        new = build(label, first.asked_duration, to_run)
+        aim = replace(new.aim, angles=first.angles, target_angles=first.angles.measure(new.formation.positions))
+        made.append(replace(first, aim=aim, law=new.law, own_gains=new.own_gains, instruments=new.instruments))
+    return tuple(made[count] for count in shapes)
 
 
 def _check_rates(path: str, target: TargetFormation, control_period: float) -> None:
@@ -277,6 +317,8 @@ def _check_feedforward(path: str, scenario: Scenario, aim: Aim) -> None:
     """The feed-forward belongs to the angle law on its leader-first-follower graph, all followers active."""
     if scenario.law.name != "angle" or aim.formation is not aim.target:
         raise InputError(f'{path}: law.feedforward: only for law.name = "angle", got "{scenario.law.name}"')
+    if scenario.law.without_neighbour == "another-pair":
+        raise InputError(f'{path}: law.feedforward: it is of one pair of neighbours, expected none with "another-pair"')
     if scenario.law.activation == "sequential":
         raise InputError(f"{path}: law.feedforward: followers that wait cannot follow, expected all to be active")
 
@@ -306,6 +348,8 @@ def _filter_settings(path: str, scenario: Scenario) -> FilterSettings:
 def _needed(file: ScenarioFile) -> str:
     """The condition on the sensing graph that the law declares, a key of ``formation.graph.conditions.CONDITIONS``."""
     table = file.scenario.law
+    if table.name == "own" and table.without_neighbour == "another-pair":
+        raise InputError(f'{file.path}: law.without_neighbour: "another-pair" is for law.name = "angle", got "own"')
     if table.name != "own":
         return LAWS[table.name].graph if table.name in LAWS else LEADER_FIRST_FOLLOWER
     return LEADER_FIRST_FOLLOWER if file.law is None or table.factory is None else condition(file.law, table.factory)
@@ -324,7 +368,10 @@ def _law(file: ScenarioFile, aim: Aim, phases: tuple[Phase, ...], to_run: bool, 
 def _built_in(path: str, table: LawTable, aim: Aim, own_gains: Real | None) -> FormationLaw:
     if isinstance(aim.formation, TargetFormation) and table.name == "angle":
         check_parameters(path, "the angle law", lambda target: None, table.parameters)
-        return AngleLaw(aim.formation, table.first_follower, own_gains)
+        kind = AnotherPairLaw if table.without_neighbour == "another-pair" else AngleLaw
+        return kind(aim.formation, table.first_follower, own_gains)
+    if table.without_neighbour == "another-pair":
+        raise InputError(f'{path}: law.without_neighbour: "another-pair" is for law.name = "angle", got "{table.name}"')
     make = LAWS[table.name]
     check_parameters(path, f"the {table.name} law", make, table.parameters)
     with located(path, "law"):
@@ -365,8 +412,16 @@ def _estimator(path: str, scenario: Scenario, graph: Graph) -> VelocityEstimator
 
 
 def _instruments(path: str, scenario: Scenario, law: FormationLaw, graph: Graph) -> Instruments:
-    table, kinds = scenario.sensor, needs(law).measures
-    imperfections = Imperfections(
+    kinds = needs(law).measures
+    edges = law.edges if isinstance(law, AnotherPairLaw) else graph.edges
+    corners = graph.corners if {ANGLE, RATIO} & set(kinds) else ()
+    with located(path, "law.measures"):
+        return Instruments(edges, corners, kinds, imperfections(scenario.sensor))
+
+
+def imperfections(table: SensorTable) -> Imperfections:
+    """How bad the sensors are."""
+    return Imperfections(
         position=table.position_noise_m,
         bearing=np.radians(table.bearing_noise_deg),
         distance=table.distance_noise_m,
@@ -375,9 +430,6 @@ def _instruments(path: str, scenario: Scenario, law: FormationLaw, graph: Graph)
         edge_loss=table.edge_loss,
         dropout=table.dropout,
     )
-    corners = graph.corners if {ANGLE, RATIO} & set(kinds) else ()
-    with located(path, "law.measures"):
-        return Instruments(graph.edges, corners, kinds, imperfections)
 
 
 def _robot(scenario: Scenario) -> RobotModel:

@@ -16,6 +16,7 @@ from scenarios.definition.bounds import (
     LARGEST_INTEGER,
     LONGEST_RUN,
     MOST_AGENTS,
+    MOST_EVENTS,
     MOST_OBSTACLES,
     SMALLEST,
 )
@@ -24,6 +25,7 @@ Number = Annotated[float, Field(strict=True, ge=-LARGEST, le=LARGEST, allow_inf_
 Positive = Annotated[float, Field(strict=True, ge=SMALLEST, le=LARGEST, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(strict=True, ge=0.0, le=LARGEST, allow_inf_nan=False)]
 Probability = Annotated[float, Field(strict=True, ge=0.0, le=1.0, allow_inf_nan=False)]
+FieldOfView = Annotated[float, Field(strict=True, ge=SMALLEST, le=360.0, allow_inf_nan=False)]
 AgentNumber = Annotated[int, Field(strict=True, ge=1, le=MOST_AGENTS)]
 Flag = Annotated[bool, Field(strict=True)]
 Vector = tuple[Number, Number]
@@ -163,6 +165,9 @@ class LawTable(Table):
     """Whether each follower waits until its neighbours have settled (Lemma 3)."""
     settled_m: Positive = 0.005
     """Distance from its place below which a follower counts as settled, for sequential activation."""
+    without_neighbour: Literal["hold-still", "keep-last", "another-pair"] = "hold-still"
+    """What a robot does whose law lacks a measurement: it holds still, keeps its last command, or, a follower of the
+    angle law, takes another pair of agents before it that it senses."""
     file: str | None = None
     """Python file of an own law; its path starts where the scenario file is."""
     factory: str | None = None
@@ -178,6 +183,9 @@ class CommunicationTable(Table):
     """(receiver, sender) pairs; each agent hears those that it senses where absent."""
     gain_per_s: Positive = 2.0
     """Rate at which an agent moves its estimate to the mean of those that it hears."""
+    message_loss: Probability = 0.0
+    """Probability that a message is lost, each by itself in each control period; who hears nobody keeps its
+    estimate."""
 
 
 class RobotTable(Table):
@@ -241,10 +249,14 @@ class SensorTable(Table):
     ratio_noise: NotNegative = 0.0
     """Standard deviation of a measured ratio of distances, as a fraction of it, for laws that measure ratios."""
     edge_loss: Probability = 0.0
-    """Probability that an edge gives no measurement during a control period, each by itself. A robot whose law needs
-    what is missing holds still."""
+    """Probability that an edge gives no measurement during a control period, each by itself; what a robot does whose
+    law needs it says `law.without_neighbour`."""
     dropout: Probability = 0.0
     """Probability that a robot measures nothing during a control period."""
+    sensing_range_m: Positive | None = None
+    """How far from its own projected point a robot measures those of others; any distance where absent."""
+    field_of_view_deg: FieldOfView | None = None
+    """Angle, half on either side of straight ahead, in which a robot measures others; all around where absent."""
     compass_bias_deg: NotNegative = 0.0
     """Standard deviation of each robot's constant compass error."""
     delay_periods: Annotated[int, Field(strict=True, ge=0, le=LONGEST_RUN)] = 0
@@ -284,6 +296,45 @@ class ObstacleTable(Table):
     """One vertex, two, or those of a convex polygon in order."""
     radius_m: NotNegative = 0.0
     """How far the obstacle reaches beyond its vertices, edges or faces."""
+
+
+class EventTable(Table):
+    """Something that happens on the way; docs/events.md says which keys belong to which kind."""
+
+    t_s: NotNegative
+    """Seconds since the start of the run: when it happens."""
+    kind: Literal["stop", "push", "dropout", "edge-loss", "sensor", "message-loss", "reshape", "obstacle"]
+    """A robot stops; it is pushed; no other robot senses it; one edge is lost; sensors get worse, or better; messages
+    are lost; the target shape changes; an obstacle appears."""
+    until_s: Positive | None = None
+    """When it is over; never where absent. A push and a reshape are over at once."""
+    agent: AgentNumber | None = None
+    """Who stops, is pushed or drops out."""
+    edge: tuple[AgentNumber, AgentNumber] | None = None
+    """[observer, observed] of the edge that is lost."""
+    displacement_m: Vector | None = None
+    """How far a push moves a robot that its tyres alone would stop: the plants without mass move it there at once,
+    `pymunk` gives it the impulse after which it slides so far, about."""
+    sensing_range_m: Positive | None = None
+    """In the place of `sensor.sensing_range_m`."""
+    field_of_view_deg: FieldOfView | None = None
+    """In the place of `sensor.field_of_view_deg`."""
+    edge_loss: Probability | None = None
+    """In the place of `sensor.edge_loss`."""
+    dropout: Probability | None = None
+    """In the place of `sensor.dropout`."""
+    message_loss: Probability | None = None
+    """In the place of `communication.message_loss`."""
+    name: Line | None = None
+    """What a person calls the part of the run that a reshape begins."""
+    target_m: Annotated[tuple[Vector, ...], Field(max_length=MOST_AGENTS)] | None = None
+    """Places of the agents 1, 2, ... in one configuration of the new shape."""
+    neighbours: Annotated[tuple[tuple[AgentNumber, ...], ...], Field(max_length=MOST_AGENTS)] | None = None
+    """Whom the agents 1, 2, ... sense from then on; those of before where absent."""
+    vertices_m: Annotated[tuple[Vector, ...], Field(min_length=1, max_length=MOST_OBSTACLES)] | None = None
+    """Of an obstacle, as in `obstacles`."""
+    radius_m: NotNegative | None = None
+    """Of an obstacle, as in `obstacles`."""
 
 
 class RandomStartTable(Table):
@@ -354,4 +405,5 @@ class Scenario(Table):
     sensor: SensorTable = SensorTable()
     safety: SafetyTable = SafetyTable()
     obstacles: Annotated[tuple[ObstacleTable, ...], Field(max_length=MOST_OBSTACLES)] = ()
+    events: Annotated[tuple[EventTable, ...], Field(max_length=MOST_EVENTS)] = ()
     goal: GoalTable = GoalTable()

@@ -99,7 +99,7 @@ def places(experiment: Experiment, trajectory: Trajectory, index: int) -> Real:
     if experiment.phases[index].reference is not None:
         return placed(experiment, trajectory.points[rows])
     leader, first = trajectory.points[rows[-1], : agents.FIRST_ORDINARY]
-    end = end_configuration(experiment.formation, leader, first)
+    end = end_configuration(experiment.of_phase(index).formation, leader, first)
     ahead = (trajectory.t[rows[-1]] - trajectory.t[rows])[:, None] * np.array(experiment.phases[index].velocity)
     return end - ahead[:, None, :]
 

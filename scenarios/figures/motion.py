@@ -9,6 +9,7 @@ from matplotlib.lines import Line2D
 
 from scenarios.definition.experiment import Experiment
 from scenarios.figures.floor import Limits, draw_edges, draw_robots, draw_trails, limits, prepare
+from scenarios.figures.happenings import mark_places, mark_times, words_height, write_words
 from scenarios.figures.labels import Labels, points_per_metre
 from scenarios.figures.palette import INK
 from scenarios.figures.style import COLUMN, SMALL, panel, sheet
@@ -38,7 +39,8 @@ def motion(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> 
     if height > TALLEST_FLOOR:
         width, height = width * TALLEST_FLOOR / height, TALLEST_FLOOR
     named = len(experiment.angles) <= MANY
-    legend = 0.11 * -(-len(experiment.angles) // 4) + 0.05 if named else 0.14
+    words = words_height(experiment)
+    legend = words + (0.11 * -(-len(experiment.angles) // 4) + 0.05 if named else 0.14)
     each = 0.34 + legend
     sums = each + EACH_HEIGHT + GAP
     floor = sums + SUM_HEIGHT + (0.64 if len(experiment.phases) > 1 else 0.52)
@@ -50,15 +52,20 @@ def motion(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> 
     draw_errors(lower, experiment, trajectory, metrics)
     mark_phases(upper, experiment, names=True)
     mark_phases(lower, experiment)
+    mark_times(upper, experiment, numbers=True)
+    mark_times(lower, experiment)
+    write_words(figure, experiment)
     upper.tick_params(labelbottom=False)
     above = 1.20 if len(experiment.phases) > 1 else 1.04
     upper.legend(loc="lower center", bbox_to_anchor=(0.5, above), ncols=3)
     if named:
         handles, names = lower.get_legend_handles_labels()
-        figure.legend(handles, names, loc="lower center", ncols=4, bbox_to_anchor=(0.5, 0.02 / figure.get_figheight()))
+        figure.legend(
+            handles, names, loc="lower center", ncols=4, bbox_to_anchor=(0.5, (words + 0.02) / figure.get_figheight())
+        )
     else:
         text = f"{len(experiment.angles)} angles, each in the colour of the agent at its vertex"
-        figure.text(0.5, 0.04 / figure.get_figheight(), text, fontsize=SMALL, ha="center", va="bottom")
+        figure.text(0.5, (words + 0.04) / figure.get_figheight(), text, fontsize=SMALL, ha="center", va="bottom")
     figure.align_ylabels([upper, lower])
     return figure
 
@@ -70,9 +77,10 @@ def _floor(axes: Axes, experiment: Experiment, trajectory: Trajectory, metrics: 
     rows = snapshot_rows(trajectory, metrics)
     for row, grey in zip(rows, np.linspace(FIRST_GREY, LAST_GREY, len(rows)), strict=True):
         if few:
-            draw_edges(axes, experiment.graph, trajectory.points[row], f"{grey:.3f}")
+            draw_edges(axes, experiment.of_phase(trajectory.phase[row]).graph, trajectory.points[row], f"{grey:.3f}")
         draw_robots(axes, experiment, trajectory.poses[row], trajectory.points[row], hollow=row == 0)
     _label(axes, experiment, trajectory, rows)
+    mark_places(axes, experiment, trajectory)
     markers = [
         Line2D([], [], linestyle="", marker="s", markersize=4, color=INK, markerfacecolor="white", label="start"),
         Line2D(

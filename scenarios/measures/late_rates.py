@@ -44,6 +44,7 @@ def measured_late_rates(experiment: Experiment, trajectory: Trajectory) -> list[
     if found is None:
         return _nothing(experiment)
     t, points, places = found
+    experiment = experiment.of_phase(trajectory.phase[-1])
     return [_rate(t, distance, window) for distance, window in _windows(experiment, points, places)]
 
 
@@ -60,7 +61,7 @@ def predicted_late_rates(experiment: Experiment, trajectory: Trajectory) -> list
     if found is None:
         return _nothing(experiment)
     t, points, places = found
-    windows = [window for _, window in _windows(experiment, points, places)]
+    windows = [window for _, window in _windows(experiment.of_phase(trajectory.phase[-1]), points, places)]
     rates = _nothing(experiment)
     fitted = sorted((*window, k) for k, window in enumerate(windows) if window is not None)
     if not fitted:
@@ -93,6 +94,7 @@ def expected_late_rates(experiment: Experiment, start: Real) -> list[float | Non
         duration = min(phase.duration, HORIZON)
         start = points[-1] + (phase.duration - duration) * np.array(phase.velocity)
     t = np.linspace(0.0, duration, len(points))
+    experiment = experiment.of_phase(-1)
     places = _places(experiment, t, points, phase.velocity)
     if places is None:
         return _nothing(experiment)
@@ -105,7 +107,8 @@ def _last_phase(experiment: Experiment, trajectory: Trajectory) -> tuple[Real, R
         return None
     last = trajectory.phase == trajectory.phase[-1]
     points, t = trajectory.points[last], trajectory.t[last]
-    places = _places(experiment, t, points, experiment.phases[trajectory.phase[-1]].velocity)
+    shaped, velocity = experiment.of_phase(trajectory.phase[-1]), experiment.phases[trajectory.phase[-1]].velocity
+    places = _places(shaped, t, points, velocity)
     return None if places is None else (t, points, places)
 
 

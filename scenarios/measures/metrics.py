@@ -74,7 +74,7 @@ class Metrics:
 @np.errstate(over="ignore", invalid="ignore")  # a diverged run is an outcome, not a warning
 def measure(experiment: Experiment, trajectory: Trajectory) -> Metrics:
     """The measures of a single run."""
-    angles, targets = experiment.angles, experiment.target_angles
+    angles, targets = experiment.angles, experiment.targets(trajectory.phase)
     errors = angles.errors(trajectory.points, targets)
     axle_errors = angles.errors(trajectory.poses[..., :2], targets)
     error_sum = np.abs(errors).sum(axis=-1)
@@ -107,7 +107,7 @@ def judged_end(experiment: Experiment, trajectory: Trajectory) -> Real:
     """(...) what the goal bounds at the end of a run, or of each run of a batch, radians."""
     first = np.searchsorted(trajectory.t, trajectory.t[-1] - WINDOW) if experiment.noisy else -1
     last = trajectory.between(int(first), len(trajectory.t))
-    errors = experiment.angles.errors(last.points, experiment.target_angles)
+    errors = experiment.angles.errors(last.points, experiment.of_phase(last.phase[-1]).target_angles)
     return np.abs(trailing(last.t, errors).mean[-1]).sum(axis=-1)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from robots.testbed import Occurrence, Violation
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.contacts import contacts
+from scenarios.measures.happenings import happenings
 from scenarios.measures.late_rates import predicted_late_rates
 from scenarios.measures.metrics import Metrics, PhaseEnd
 from scenarios.measures.safety_result import safety_result
@@ -51,7 +52,7 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
                 "axle_error_rad": _number(axle_error),
             }
             for name, target, error, axle_error in zip(
-                experiment.angle_names, experiment.target_angles, final, axle_final, strict=True
+                experiment.angle_names, _end(experiment, trajectory).target_angles, final, axle_final, strict=True
             )
         ],
         "angle_error_sum_rad": _number(metrics.error_sum[-1]),
@@ -85,6 +86,7 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
             for end in metrics.phases
         ],
         **safety_result(experiment, trajectory),
+        **happenings(experiment, trajectory, metrics),
     }
     if metrics.window is not None:
         _add_window(content, metrics.window)
@@ -121,7 +123,12 @@ def versions() -> dict[str, str]:
 
 
 def _axle_errors(experiment: Experiment, trajectory: Trajectory) -> np.ndarray:
-    return experiment.angles.errors(trajectory.poses[-1, :, :2], experiment.target_angles)
+    return experiment.angles.errors(trajectory.poses[-1, :, :2], _end(experiment, trajectory).target_angles)
+
+
+def _end(experiment: Experiment, trajectory: Trajectory) -> Experiment:
+    """The experiment with the shape of the run's last phase."""
+    return experiment.of_phase(trajectory.phase[-1])
 
 
 def _number(value: float) -> float | None:

@@ -37,7 +37,12 @@ class Tracking:
 def predicted_ends(experiment: Experiment, start: Real) -> Real:
     """(P, n, 2) the end configuration of each phase that the theory predicts from a start (n, 2), metres."""
     pairs = pair_ends(start[: agents.FIRST_ORDINARY], experiment.phases, experiment.first_follower, told(experiment))
-    return np.stack([end_configuration(experiment.formation, leader, first) for leader, first in pairs])
+    return np.stack(
+        [
+            end_configuration(experiment.of_phase(index).formation, leader, first)
+            for index, (leader, first) in enumerate(pairs)
+        ]
+    )
 
 
 def reference(experiment: Experiment, trajectory: Trajectory) -> Real:
@@ -79,11 +84,20 @@ def told(experiment: Experiment) -> bool:
 def track(experiment: Experiment, trajectory: Trajectory) -> Tracking:
     """The tracking errors of a single run."""
     wanted = reference(experiment, trajectory)
-    scale, angle, centroid = fit_similarity(experiment.formation, trajectory.points)
-    scale_0, angle_0, centroid_0 = fit_similarity(experiment.formation, wanted)
+    scale, angle, centroid = _fits(experiment, trajectory.phase, trajectory.points)
+    scale_0, angle_0, centroid_0 = _fits(experiment, trajectory.phase, wanted)
     return Tracking(
         scale=scale / scale_0 - 1.0,
         orientation=wrap(angle - angle_0),
         translation=np.linalg.norm(centroid - centroid_0, axis=-1),
         distances=np.linalg.norm(trajectory.points - wanted, axis=-1),
     )
+
+
+def _fits(experiment: Experiment, phase: NDArray[np.intp], points: Real) -> tuple[Real, Real, Real]:
+    """Scale (T,), angle (T,) and centroid (T, 2) of points (T, n, 2) in phases (T,), each of its phase's shape."""
+    if not experiment.shapes:
+        return fit_similarity(experiment.formation, points)
+    parts = [fit_similarity(experiment.of_phase(index).formation, points[phase == index]) for index in np.unique(phase)]
+    scale, angle, centroid = (np.concatenate(each) for each in zip(*parts, strict=True))
+    return scale, angle, centroid

@@ -61,7 +61,7 @@ def whole(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> P
 def rows(experiment: Experiment, trajectory: Trajectory, first: int, end: int) -> Piece:
     """The rows from ``first`` up to, not including, ``end`` of a run that goes on."""
     part = trajectory.between(first, end)
-    errors = experiment.angles.errors(part.points, experiment.target_angles)
+    errors = experiment.angles.errors(part.points, experiment.targets(part.phase))
     return Piece(
         experiment,
         trajectory.points[0],

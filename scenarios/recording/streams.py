@@ -8,7 +8,7 @@ from typing import Any
 from scenarios.definition.experiment import Experiment
 from scenarios.recording.piece import Piece
 from scenarios.recording.recorder import Recorder
-from scenarios.recording.views import plots, scene, summary, timeline
+from scenarios.recording.views import happenings, plots, scene, summary, timeline
 
 SETUP: tuple[Callable[[Recorder, Experiment], None], ...] = (
     scene.floor,
@@ -34,6 +34,7 @@ MOTION: tuple[Callable[[Recorder, Piece], None], ...] = (
     plots.interventions,
     plots.tracking,
     timeline.phases,
+    happenings.happenings,
     timeline.activation,
     timeline.goal,
     timeline.safety,

@@ -17,6 +17,7 @@ from scenarios.measures.predictions.remarks import remarks
 from scenarios.report.cells import NO_PREDICTION, digits, place
 from scenarios.report.closed_forms import print_closed_forms
 from scenarios.report.course import print_course
+from scenarios.report.happenings import print_plan
 from scenarios.terminal import new_table, print_table
 
 
@@ -35,6 +36,7 @@ def print_experiment(console: Console, experiment: Experiment, seed: int) -> Non
     else:
         console.print(f"\n{NO_PREDICTION}")
     print_course(console, experiment, start)
+    print_plan(console, experiment, start)
     print_closed_forms(console, experiment, start)
     for remark in remarks(experiment, seed):
         console.print(escape(remark), style="bold")
@@ -135,9 +137,9 @@ def _print_forecast(console: Console, experiment: Experiment, predicted: list[Ph
         f"within {NEAR:g} m after (s)",
     )
     until = 0.0
-    for phase, ahead in zip(experiment.phases, predicted, strict=True):
+    for index, (phase, ahead) in enumerate(zip(experiment.phases, predicted, strict=True)):
         until += phase.duration
-        similarity = end_similarity(experiment.formation, *ahead.end[: agents.FIRST_ORDINARY])
+        similarity = end_similarity(experiment.of_phase(index).formation, *ahead.end[: agents.FIRST_ORDINARY])
         table.add_row(
             escape(phase.name),
             f"{until:g}",

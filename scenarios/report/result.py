@@ -10,6 +10,7 @@ from rich.markup import escape
 from formation import agents
 from scenarios.documents import cell
 from scenarios.report.cells import NO_PREDICTION, place
+from scenarios.report.happenings import print_happenings
 from scenarios.terminal import new_table, print_table
 
 
@@ -32,6 +33,7 @@ def print_result(console: Console, result: dict[str, Any]) -> None:
     _print_phases(console, result)
     if result["phases"]:
         _print_ends(console, result)
+    print_happenings(console, result)
     settled = result["settling_time_s"]
     settling = "never" if settled is None else f"after {settled:.1f} s"
     console.print(f"settled below {result['goal_rad']:g} rad: {settling}")

@@ -30,9 +30,13 @@ class Guard:
         self._distributed = safety if isinstance(safety, Distributed) else None
         self._position, self._bearing = table.position_noise_m, np.radians(table.bearing_noise_deg)
         self._seen = (experiment.n, experiment.n + WALLS + len(experiment.arena.obstacles))
-        self._observer, self._observed = experiment.graph.edges.T
+        self.take_edges(experiment.instruments.edges)
         self._noise: Noise | None = None
         self._period = experiment.scenario.plant.control_period_s
+
+    def take_edges(self, edges: NDArray[np.intp]) -> None:
+        """Take the edges (m, 2) along which the law measures."""
+        self._observer, self._observed = edges.T
 
     def begin_period(
         self,

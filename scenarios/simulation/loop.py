@@ -6,12 +6,14 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from formation import Phase
 from robots import make_world
-from robots.worlds import NOTHING
+from robots.worlds import NOTHING, World
+from scenarios.definition.events.event import OBSTACLE
 from scenarios.definition.experiment import Experiment
 from scenarios.simulation.controller import Controller
 from scenarios.simulation.guard import SafetyRecord
+from scenarios.simulation.outages import Outages, pushes, standing
+from scenarios.simulation.schedule import Part, schedule
 from scenarios.simulation.trajectory import Trajectory
 
 
@@ -53,8 +55,8 @@ def simulate(
         generators=generators,
     )
     controller = Controller(experiment, generators, batch)
-    schedule = [(phase, *periods(phase, experiment.scenario.plant.control_period_s)) for phase in experiment.phases]
-    total = sum(count for _, count, _ in schedule)
+    parts = schedule(experiment)
+    total = sum(part.count for part in parts)
     t = np.empty(total + 1)
     poses = np.empty((total + 1, *world.poses.shape))
     points = np.empty((total + 1, *world.points.shape))
@@ -78,14 +80,18 @@ def simulate(
         safety.blockers,
         safety.stuck,
     )
-    done, start = 0, 0.0
-    for index, (phase, count, period) in enumerate(schedule):
-        controller.begin_phase(phase)
-        for step in range(1, count + 1):
+    done = 0
+    for part in parts:
+        if part.begins:
+            controller.begin_phase(part.index)
+        if experiment.events:
+            _happen(experiment, part, world, controller)
+        index, period = part.index, part.period
+        for step in range(1, part.count + 1):
             controller.begin_period(*world.seen, period)
             world.step(controller, period)
             done += 1
-            t[done] = start + phase.duration * (step / count)
+            t[done] = part.start + part.duration * (step / part.count)
             poses[done], points[done], wheel_speeds[done] = world.poses, world.points, world.wheel_speeds
             phase_index[done], contact[done], active[done] = index, world.contacts, controller.active
             safety.take(done)
@@ -98,17 +104,15 @@ def simulate(
                 break
         if total == done:
             break
-        start += phase.duration
     return trajectory.until(total + 1)
 
 
-def periods(phase: Phase, control_period: float) -> tuple[int, float]:
-    """How many control periods fit a phase, and their length, seconds, stretched so that they fit exactly."""
-    count = max(1, round(phase.duration / control_period))
-    return count, phase.duration / count
-
-
-def count_periods(experiment: Experiment) -> int:
-    """How many control periods a run has."""
-    length = experiment.scenario.plant.control_period_s
-    return sum(periods(phase, length)[0] for phase in experiment.phases)
+def _happen(experiment: Experiment, part: Part, world: World, controller: Controller) -> None:
+    """Let happen what happens at the begin of a part of the run."""
+    controller.take(Outages.at(experiment, part.start, part.index))
+    if (way := pushes(experiment, part.start)) is not None:
+        world.push(np.broadcast_to(way, world.points.shape))
+    if any(event.kind == OBSTACLE for event in experiment.events):
+        there = standing(experiment, part.start)
+        world.stand(there)
+        controller.avoid(there)

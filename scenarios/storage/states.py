@@ -17,7 +17,7 @@ from robots.worlds import NOTHING
 from scenarios.definition.experiment import Experiment
 from scenarios.definition.files.reading import open_regular
 from scenarios.errors import InputError
-from scenarios.simulation.loop import periods
+from scenarios.simulation.schedule import count_periods
 from scenarios.simulation.trajectory import Trajectory
 
 REAL, INDEX, SMALL, FLAG = (np.dtype(kind) for kind in (np.float64, np.intp, np.int32, np.bool_))
@@ -109,8 +109,7 @@ def _opened(path: Path) -> Iterator[zipfile.ZipFile]:
 
 def _rows(path: Path, archive: zipfile.ZipFile, experiment: Experiment) -> int:
     """How many states there are: all of the run, or fewer where it diverged."""
-    period = experiment.scenario.plant.control_period_s
-    most = 1 + sum(periods(phase, period)[0] for phase in experiment.phases)
+    most = 1 + count_periods(experiment)
     _, shape = _header(path, archive, "t")
     if len(shape) != 1 or not 2 <= shape[0] <= most:
         raise InputError(f"{path}: t: expected the shape (T,) with T from 2 to {most}, got {shape}")

@@ -10,7 +10,8 @@ from scenarios.definition.bounds import MOST_STARTS
 from scenarios.definition.experiment import Experiment
 from scenarios.errors import InputError
 from scenarios.measures.metrics import judged_end
-from scenarios.simulation.loop import count_periods, simulate
+from scenarios.simulation.loop import simulate
+from scenarios.simulation.schedule import count_periods
 
 Progress = Callable[[int, int], None]
 """Called with the number of control periods done and of all."""

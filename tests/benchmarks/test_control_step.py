@@ -26,7 +26,7 @@ def ready(experiment: Experiment, seed: int = 0) -> tuple[World, Controller]:
         arena=experiment.arena,
     )
     controller = Controller(experiment, [rng], ())
-    controller.begin_phase(experiment.phases[0])
+    controller.begin_phase(0)
     return world, controller
 
 

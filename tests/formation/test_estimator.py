@@ -63,3 +63,14 @@ def test_an_estimate_covers_the_share_of_its_way_that_an_exponential_does(step: 
     for periods in (1, 2, 3):
         estimates = estimator.step(estimates, velocity, step)
         np.testing.assert_allclose(estimates[1], (1.0 - np.exp(-2.0 * step * periods)) * velocity, rtol=1e-12)
+
+
+def test_who_hears_nobody_keeps_its_estimate_and_the_others_average_what_they_hear() -> None:
+    estimator = VelocityEstimator(3, [[1, 0], [2, 0], [2, 1]], 2.0)
+    estimates = np.array([[9.0, 9.0], [0.0, 0.1], [0.3, 0.0]])
+    heard = np.array([False, True, False])
+    after = estimator.step(estimates, [0.5, 0.0], 0.1, heard)
+    assert (after[1] == estimates[1]).all()
+    np.testing.assert_allclose(after[2], estimates[2] + (1.0 - np.exp(-0.2)) * (np.array([0.5, 0.0]) - estimates[2]))
+    everyone = estimator.step(estimates, [0.5, 0.0], 0.1, np.ones(3, dtype=bool))
+    np.testing.assert_allclose(everyone, estimator.step(estimates, [0.5, 0.0], 0.1))

@@ -18,11 +18,13 @@ from numpy.typing import NDArray
 
 from scenarios.definition.experiment import Experiment
 from scenarios.figures.floor import limits, placed, prepare, wedge
+from scenarios.figures.happenings import mark_times, news
 from scenarios.figures.palette import FAINT, INK, agent_colour
 from scenarios.figures.style import SMALL, panel
 from scenarios.figures.timelines import MANY, draw_error_sum, mark_phases
 from scenarios.measures.metrics import Metrics
 from scenarios.measures.tracking import reference
+from scenarios.simulation.outages import lost_edges
 from scenarios.simulation.trajectory import Trajectory
 
 Pixels = NDArray[np.uint8]
@@ -66,6 +68,7 @@ class Film:
         draw_error_sum(self._errors, experiment, trajectory, metrics)
         self._errors.set_xlabel("time (s)")
         mark_phases(self._errors, experiment, names=True)
+        mark_times(self._errors, experiment, numbers=True)
         self._predicted = reference(experiment, trajectory) if experiment.predicted else None
         self._make_movers()
 
@@ -108,18 +111,29 @@ class Film:
             for row in range(n if n <= MANY else 0)
         ]
         self._clock = self.floor.text(1.0, 1.02, "", transform=self.floor.transAxes, ha="right", va="bottom")
+        self._news = self.floor.text(
+            0.01,
+            0.985,
+            "",
+            transform=self.floor.transAxes,
+            fontsize=SMALL,
+            ha="left",
+            va="top",
+            zorder=8,
+            bbox={"facecolor": "white", "alpha": 0.85, "linewidth": 0.0, "pad": 1.5},
+        )
         self._cursor = self._errors.axvline(0.0, color=INK, linewidth=0.6)
         moving: list[Artist] = [self._edges, self._ghosts, self._bodies, self._noses, self._dots]
         for artist in (self._trails, *moving):
             self.floor.add_artist(artist)
-        for artist in (self._trails, *moving, *self._numbers, self._clock, self._cursor):
+        for artist in (self._trails, *moving, *self._numbers, self._clock, self._news, self._cursor):
             artist.set_animated(True)
 
     def _move(self, row: int) -> None:
         """Draw what moves, as it is in a row of the trajectory."""
         points, poses = self._trajectory.points[row], self._trajectory.poses[row]
         chassis = self._experiment.robot.chassis
-        self._edges.set_segments(list(points[self._experiment.graph.formation_edges]))
+        self._edges.set_segments(list(points[self._edges_at(row)]))
         if self._predicted is not None:
             self._ghosts.set_data(*self._predicted[row].T)
         if self._experiment.plant == "single_integrator":
@@ -137,8 +151,23 @@ class Film:
         phase = f"{phases[self._trajectory.phase[row]].name}, " if len(phases) > 1 else ""
         self._clock.set_text(f"{phase}{t:.1f} s")
         self.floor.draw_artist(self._clock)
+        if self._experiment.events:
+            self._news.set_text(news(self._experiment, t))
+            self.floor.draw_artist(self._news)
         self._cursor.set_xdata([t, t])
         self._errors.draw_artist(self._cursor)
+
+    def _edges_at(self, row: int) -> NDArray[np.intp]:
+        """The formation graph's edges, without those that an event has taken."""
+        index, t = int(self._trajectory.phase[row]), float(self._trajectory.t[row])
+        graph = self._experiment.of_phase(index).graph
+        edges = graph.formation_edges
+        if not self._experiment.events:
+            return edges
+        sensed = len(graph.edges)
+        keep = np.ones(len(edges), dtype=bool)
+        keep[:sensed] = ~lost_edges(self._experiment, t, index)[:sensed]
+        return edges[keep]
 
 
 def frame_rows(trajectory: Trajectory, speed: float, fps: float) -> NDArray[np.intp]:

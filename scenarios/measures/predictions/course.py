@@ -11,7 +11,7 @@ from formation import agents
 from formation.references.lag import settled, settled_robots, shape_residual
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.tracking import following
-from scenarios.simulation.loop import periods
+from scenarios.simulation.schedule import periods
 
 Real = NDArray[np.float64]
 

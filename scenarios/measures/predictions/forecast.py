@@ -49,15 +49,16 @@ def forecast(experiment: Experiment, start: Real) -> list[PhaseForecast]:
     """The forecast of each phase from a start (n, 2), metres: Theorems 1 and 2 and the closed loop's exact solution."""
     here: Real | None = start if moves_exactly(experiment) else None
     forecasts = []
-    for phase, end in zip(experiment.phases, predicted_ends(experiment, start), strict=True):
+    ends = predicted_ends(experiment, start)
+    for phase, end, shaped in zip(experiment.phases, ends, map(experiment.of_phase, range(len(ends))), strict=True):
         if here is None:
             forecasts.append(PhaseForecast(end, None, None, None))
             continue
         steps = int(np.ceil(phase.duration / (2.0 * STEP)))
-        loop, first = Cascade.of(experiment.target, gains=experiment.own_gains), experiment.first_follower
+        loop, first = Cascade.of(shaped.target, gains=shaped.own_gains), experiment.first_follower
         arrived = arrival(_errors(loop, as_complex(here), phase, first, as_complex(end)), loop.reach, NEAR, STEP)
         here = points(ideal(loop, as_complex(here), phase, first, phase.duration / steps), steps)[-1]
-        error_sum = float(np.abs(experiment.angles.errors(here, experiment.target_angles)).sum())
+        error_sum = float(np.abs(experiment.angles.errors(here, shaped.target_angles)).sum())
         forecasts.append(PhaseForecast(end, here, error_sum, arrived))
     return forecasts
 

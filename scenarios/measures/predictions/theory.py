@@ -12,8 +12,9 @@ from formation.analysis import first_follower
 from formation.analysis.cascade import Cascade
 from formation.analysis.exact import held, ideal, points
 from formation.plane import Complex, as_complex
+from scenarios.definition.events.event import RESHAPE
 from scenarios.definition.experiment import Experiment
-from scenarios.simulation.loop import periods
+from scenarios.simulation.schedule import periods
 
 Real = NDArray[np.float64]
 
@@ -31,6 +32,7 @@ def moves_exactly(experiment: Experiment) -> bool:
         and scenario.law.activation == "simultaneous"
         and experiment.estimator is None
         and experiment.phases[0].reference is None
+        and all(event.kind == RESHAPE for event in experiment.events)
         and not scenario.sensor.delay_periods
     )
 
@@ -40,7 +42,8 @@ def cascade(experiment: Experiment, start: Real, index: int) -> Cascade:
     leader, first = as_complex(start)[: agents.FIRST_ORDINARY]
     delta = experiment.phases[index].displacement
     rate = first_follower.rate(experiment.first_follower, first - leader, delta)
-    return Cascade.of(experiment.target, rate, experiment.own_gains)
+    shaped = experiment.of_phase(index)
+    return Cascade.of(shaped.target, rate, shaped.own_gains)
 
 
 def motion(experiment: Experiment, start: Real, index: int, horizon: float = np.inf) -> Real:
@@ -58,5 +61,6 @@ def states(experiment: Experiment, start: Complex, index: int, period: float) ->
     Commands are held over a period where the plant holds them; neither wheels nor a filter change them.
     """
     move = ideal if experiment.plant == "single_integrator" else held
-    loop = Cascade.of(experiment.target, gains=experiment.own_gains)
+    shaped = experiment.of_phase(index)
+    loop = Cascade.of(shaped.target, gains=shaped.own_gains)
     return move(loop, start, experiment.phases[index], experiment.first_follower, period)

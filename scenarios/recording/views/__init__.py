@@ -3,4 +3,4 @@
 Where streams go, and when, is not known here: a :class:`~scenarios.recording.recorder.Recorder` takes all.
 """
 
-__all__ = ["blueprint", "plots", "scene", "style", "summary", "timeline"]
+__all__ = ["blueprint", "happenings", "plots", "scene", "style", "summary", "timeline"]

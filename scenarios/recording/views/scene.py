@@ -17,6 +17,7 @@ from scenarios.measures.tracking import following, predicted_ends
 from scenarios.recording.piece import Index, Piece, Real
 from scenarios.recording.recorder import Recorder
 from scenarios.recording.views import style
+from scenarios.simulation.outages import lost_edges
 
 Single = NDArray[np.float32]
 
@@ -136,8 +137,17 @@ def sensing(recorder: Recorder, piece: Piece) -> None:
     e = points[:, observed] - points[:, observer]
     length = np.linalg.norm(e, axis=-1, keepdims=True)
     inset = np.minimum(style.ARROW_INSET / np.maximum(length, 1e-9), 0.5)
+    if piece.experiment.events:
+        inset = np.where(_lost(piece, rows)[..., None], 0.5, inset)  # an arrow without length
     origins, vectors = points[:, observer] + inset * e, (1.0 - 2.0 * inset) * e
     recorder.columns(SENSING, piece.t[rows], rr.Arrows2D.columns(origins=origins, vectors=vectors))
+
+
+def _lost(piece: Piece, rows: Index) -> NDArray[np.bool_]:
+    """(T', m) which edges of the graph an event has taken, at rows of the piece."""
+    m = len(piece.experiment.graph.edges)
+    states = zip(piece.t[rows].tolist(), piece.trajectory.phase[rows].tolist(), strict=True)
+    return np.array([lost_edges(piece.experiment, t, index)[:m] for t, index in states]).reshape(-1, m)
 
 
 def sensing_style(recorder: Recorder, experiment: Experiment) -> None:

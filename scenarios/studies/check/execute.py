@@ -10,7 +10,8 @@ from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.measures.metrics import measure
 from scenarios.measures.result import result
 from scenarios.simulation.compiling import compile_filter
-from scenarios.simulation.loop import periods, simulate
+from scenarios.simulation.loop import simulate
+from scenarios.simulation.schedule import count_periods
 from scenarios.studies.check.perturbed import perturbed
 from scenarios.studies.check.quantities import Measures, measures
 from scenarios.work.processes import run_all
@@ -67,9 +68,8 @@ def execute(jobs: Sequence[Job], workers: int, on_progress: Callable[[int, int],
 def _cost(job: Job) -> float:
     experiment = job.open()
     experiment.initial_points(job.seed)
-    period = experiment.scenario.plant.control_period_s
     stages = 4 if job.plant == "single_integrator" else 1
-    return stages * (experiment.n + 50) * sum(periods(phase, period)[0] for phase in experiment.phases)
+    return stages * (experiment.n + 50) * count_periods(experiment)
 
 
 def _run(job: Job) -> Done:

@@ -15,7 +15,7 @@ from scenarios.definition.experiment import Experiment, open_experiment, require
 from scenarios.definition.load import ScenarioFile
 from scenarios.errors import InputError
 from scenarios.measures.result import versions
-from scenarios.simulation.loop import count_periods
+from scenarios.simulation.schedule import count_periods
 from scenarios.studies.project import PROJECT
 from scenarios.studies.sweep.seeds import Seeds
 from scenarios.studies.sweep.variations import Variation, combinations

@@ -5,7 +5,6 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from formation import Phase
 from scenarios.definition.experiment import Experiment
 from scenarios.simulation.controller import Controller
 from scenarios.simulation.loop import simulate
@@ -14,9 +13,9 @@ LAWS = ["stationary", "displacement", "distance", "bearing"]
 Moving = Callable[..., Experiment]
 
 
-def controller(experiment: Experiment, phase: Phase) -> Controller:
+def controller(experiment: Experiment) -> Controller:
     made = Controller(experiment, [np.random.default_rng(0)], ())
-    made.begin_phase(phase)
+    made.begin_phase(0)
     made.begin_period(experiment.initial_points(0), np.tile([1.0, 0.0], (experiment.n, 1)), 0.033)
     return made
 
@@ -27,7 +26,7 @@ def test_a_command_is_unchanged_when_every_state_that_its_robot_does_not_sense_i
 ) -> None:
     """Others' headings too: a robot knows no heading but, by its compass, its own."""
     experiment = moving(first_follower)
-    command = controller(experiment, experiment.phases[0])
+    command = controller(experiment)
     rng = np.random.default_rng(0)
     theta = rng.uniform(-np.pi, np.pi, experiment.n)
     points, headings = experiment.initial_points(0), np.stack([np.cos(theta), np.sin(theta)], axis=-1)
@@ -44,7 +43,7 @@ def test_a_command_is_unchanged_when_every_state_that_its_robot_does_not_sense_i
 
 def test_a_command_does_change_when_a_sensed_neighbour_moves(shape: Experiment) -> None:
     """So that the poison above would be noticed."""
-    command = controller(shape, shape.phases[0])
+    command = controller(shape)
     headings = np.tile([1.0, 0.0], (shape.n, 1))
     for k, i in shape.graph.edges[1:]:
         moved = shape.initial_points(0).copy()

@@ -13,7 +13,8 @@ from robots import GTERNAL, PLANTS
 from robots.worlds.contact import SUBSTEPS
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.metrics import measure
-from scenarios.simulation.loop import periods, simulate
+from scenarios.simulation.loop import simulate
+from scenarios.simulation.schedule import periods
 
 Varied = Callable[..., Experiment]
 NOISE = ("sensor.position_noise_m=0.005", "sensor.bearing_noise_deg=1.0")

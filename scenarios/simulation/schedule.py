@@ -1,0 +1,68 @@
+"""When a run does what: its phases, cut where something happens, each part with a whole number of control periods."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+from formation import Phase
+from scenarios.definition.events.event import SAME_TIME
+from scenarios.definition.experiment import Experiment
+
+
+@dataclass(frozen=True)
+class Part:
+    """A stretch of a run in which nothing begins or ends but at its begin.
+
+    Attributes:
+        index: of its phase.
+        begins: whether the phase begins with it.
+        start: seconds since the start of the run.
+        duration: seconds.
+        count: control periods.
+    """
+
+    index: int
+    begins: bool
+    start: float
+    duration: float
+    count: int
+
+    @property
+    def period(self) -> float:
+        """Length of its control periods, seconds."""
+        return self.duration / self.count
+
+
+def schedule(experiment: Experiment) -> list[Part]:
+    """The parts of a run in their order; those of a run without events are its phases."""
+    length = experiment.scenario.plant.control_period_s
+    times = sorted({time for event in experiment.events for time in event.boundaries})
+    parts, start = [], 0.0
+    for index, phase in enumerate(experiment.phases):
+        inside = [t - start for t in times if start + SAME_TIME < t < start + phase.duration - SAME_TIME]
+        edges = [0.0]
+        for edge in [*inside, phase.duration]:
+            if edge - edges[-1] > SAME_TIME or edge is phase.duration:
+                edges.append(edge)
+        for low, high in pairwise(edges):
+            count, _ = split(high - low, length)
+            parts.append(Part(index, low == 0.0, start + low, high - low, count))
+        start += phase.duration
+    return parts
+
+
+def split(duration: float, control_period: float) -> tuple[int, float]:
+    """How many control periods fill so many seconds, and their length, seconds, stretched so that they fit exactly."""
+    count = max(1, round(duration / control_period))
+    return count, duration / count
+
+
+def periods(phase: Phase, control_period: float) -> tuple[int, float]:
+    """How many control periods fit a phase that nothing cuts, and their length, seconds."""
+    return split(phase.duration, control_period)
+
+
+def count_periods(experiment: Experiment) -> int:
+    """How many control periods a run has."""
+    return sum(part.count for part in schedule(experiment))
