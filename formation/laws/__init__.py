@@ -3,6 +3,7 @@
 __all__ = [
     "affine",
     "angle",
+    "another_pair",
     "area",
     "base",
     "bearing",

@@ -7,6 +7,7 @@ __all__ = [
     "bounds",
     "choice",
     "digest",
+    "events",
     "experiment",
     "files",
     "formations",

@@ -3,6 +3,7 @@
 __all__ = [
     "closed_forms",
     "contacts",
+    "happenings",
     "late_rates",
     "metrics",
     "predictions",

@@ -3,4 +3,4 @@
 Measures no trajectory.
 """
 
-__all__ = ["course", "forecast", "misfits", "remarks", "theory"]
+__all__ = ["course", "forecast", "misfits", "remarks", "stops", "theory"]
