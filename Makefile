@@ -2,6 +2,7 @@
 PYTHON ?= python3
 VENV := .venv
 LOWEST := .venv-lowest
+DIST := .venv-dist
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 SCENARIO ?= shape
@@ -9,7 +10,7 @@ SCENARIO ?= shape
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install run test quick lint check bench figures lowest mutants fuzz kills pairs evidence screenshots clean
+.PHONY: help install run test quick lint check bench figures dist lowest mutants fuzz kills pairs evidence screenshots clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -66,6 +67,24 @@ figures: $(STAMP) ## draw the figures of the documents, the film included
 	$(BIN)/formation animate runs/figures/maneuver-testbed --speed 12 --fps 12
 	cp runs/figures/maneuver-testbed/animation.gif docs/images/maneuver-testbed.gif
 
+dist: ## build wheel and source archive, check them, run a scenario with each in an empty environment
+	rm -rf $(DIST) dist build
+	$(PYTHON) -m venv $(DIST)/build
+	$(DIST)/build/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt \
+		build check-wheel-contents
+	$(DIST)/build/bin/python -m build
+	$(DIST)/build/bin/check-wheel-contents dist/*.whl
+	tar -tzf dist/*.tar.gz | sed 's,^[^/]*/,,' | sort > $(DIST)/packed
+	git ls-files | sort | comm -23 - $(DIST)/packed > $(DIST)/left-out
+	test ! -s $(DIST)/left-out || { echo 'not in the source archive:'; cat $(DIST)/left-out; exit 1; }
+	for archive in $(CURDIR)/dist/*; do \
+		rm -rf $(DIST)/user && $(PYTHON) -m venv $(DIST)/user && \
+		$(DIST)/user/bin/python -m pip install --quiet --disable-pip-version-check "$$archive" && \
+		(cd $(DIST) && user/bin/formation --version && user/bin/formation list && \
+			{ user/bin/formation run shape --duration 2 --out user/run || test $$? -eq 1; } && \
+			test -f user/run/result.json) || exit 1; \
+	done
+
 fuzz: $(STAMP) ## 6,500 mutants of scenarios, run folders and options (about 15 minutes)
 	$(BIN)/python -m tests.fuzz
 
@@ -83,5 +102,5 @@ screenshots: $(STAMP) ## pictures of the viewer for docs/recording.md (needs xvf
 	$(BIN)/python docs/screenshots.py
 
 clean: ## remove the environment, caches and runs
-	rm -rf $(VENV) $(LOWEST) runs build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache .benchmarks
+	rm -rf $(VENV) $(LOWEST) $(DIST) runs build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache .benchmarks
 	find formation robots scenarios tests -name __pycache__ -type d -exec rm -rf {} +

@@ -52,7 +52,7 @@ def connected(address: str, code: Code) -> Iterator[Spread]:
         from distributed import Client
     except ImportError as error:
         raise InputError(
-            f"--scheduler: needs the package distributed: pip install '{code.distribution}[cluster]' ({error})"
+            f"--scheduler: needs the package distributed, the extra 'cluster' of {code.distribution} ({error})"
         ) from error
     with _silent(), ExitStack() as stack:
         with _located(address):
