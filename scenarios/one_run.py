@@ -61,7 +61,9 @@ def run_to_folder(
         compile_filter(experiment.safety)
         with progress_bar(console, experiment.file.name) as advance:
             trajectory = simulate(experiment, seed, advance, view)
-        metrics, summary = _finish(experiment, seed, trajectory, scratch, encoder, console)
+        metrics = measure(experiment, trajectory)
+        summary = result(experiment, seed, trajectory, metrics)
+        _fill(scratch, experiment, trajectory, metrics, summary, encoder, console)
     _close_view(view, live, summary, console)
     print_result(console, summary)
     console.print(f"run folder: {escape(plain(str(folder)))}")
@@ -77,23 +79,44 @@ def keep(experiment: Experiment, trajectory: Trajectory, folder: Path, console: 
     Raises:
         InputError: the folder cannot be written.
     """
-    with run_folder.writing(folder) as scratch, Encoder() as encoder:
-        metrics, summary = _finish(experiment, 0, trajectory, scratch, encoder, console)
+    metrics = measure(experiment, trajectory)
+    summary = result(experiment, 0, trajectory, metrics)
+    save(experiment, trajectory, metrics, summary, folder, console)
     print_result(console, summary)
     console.print(f"run folder: {escape(plain(str(folder)))}")
     return metrics.outcome == "converged"
 
 
-def _finish(
-    experiment: Experiment, seed: int, trajectory: Trajectory, scratch: Path, encoder: Encoder | None, console: Console
-) -> tuple[Metrics, dict[str, Any]]:
-    """Measure, and write what a run folder holds."""
-    metrics = measure(experiment, trajectory)
-    summary = result(experiment, seed, trajectory, metrics)
+def save(
+    experiment: Experiment,
+    trajectory: Trajectory,
+    metrics: Metrics,
+    summary: dict[str, Any],
+    folder: Path,
+    console: Console,
+) -> None:
+    """Write the run folder of a run that is made, with its recording.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    with run_folder.writing(folder) as scratch, Encoder() as encoder:
+        _fill(scratch, experiment, trajectory, metrics, summary, encoder, console)
+
+
+def _fill(
+    scratch: Path,
+    experiment: Experiment,
+    trajectory: Trajectory,
+    metrics: Metrics,
+    summary: dict[str, Any],
+    encoder: Encoder | None,
+    console: Console,
+) -> None:
+    """All files of a run folder."""
     run_folder.write(scratch, experiment, trajectory, metrics.angle_errors, summary)
     with _recording(encoder, scratch, console):
         _draw_overview(experiment, trajectory, metrics, scratch)
-    return metrics, summary
 
 
 def _draw_overview(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, folder: Path) -> None:

@@ -46,12 +46,13 @@ def export(
     run does not arrive.
     """
     from scenarios.definition.experiment import open_experiment
+    from scenarios.definition.load import changed
     from scenarios.export.portable import crowded, start_poses
     from scenarios.export.script import script
     from scenarios.measures.predictions.remarks import remarks
     from scenarios.storage.files import write_whole
 
-    changes = options.changed(changes, safety=safety)
+    changes = changed(changes, safety=safety)
     experiment = open_experiment(scenario, changes, duration)
     text = script(experiment, seed)
     notes = remarks(experiment, seed)

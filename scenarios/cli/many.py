@@ -41,6 +41,7 @@ def sweep_command(
     Where --vary is given several times, every combination of the values is run with every seed. Rows are kept as they
     come: the same command goes on where a sweep was stopped. Exit code 0 whatever the runs gave.
     """
+    from scenarios.definition.load import changed
     from scenarios.studies.project import PROJECT
     from scenarios.studies.sweep.seeds import parse_seeds
     from scenarios.studies.sweep.study import open_study
@@ -50,7 +51,7 @@ def sweep_command(
     from scenarios.terminal import new_console, progress_bar
     from scenarios.work.spread import spread
 
-    changes = options.changed(changes, plant, safety)
+    changes = changed(changes, plant, safety)
     console = new_console()
     variations = parse_variations(varied, changes)
     study = open_study(scenario, changes, variations, parse_seeds(seeds), duration, safety)

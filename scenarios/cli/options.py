@@ -1,4 +1,4 @@
-"""Arguments and options that several commands share, each defined once, and what ``--plant`` and ``--safety`` mean."""
+"""Arguments and options that several commands share, each defined once."""
 
 from __future__ import annotations
 
@@ -37,12 +37,3 @@ def out(what: str) -> Option:
 def markdown(what: str) -> Option:
     """The file for a report as Markdown; ``what`` says of what."""
     return click.option("--markdown", type=click.Path(path_type=Path, dir_okay=False), help=what)
-
-
-def changed(changes: tuple[str, ...], plant: str | None = None, safety: str | None = None) -> tuple[str, ...]:
-    """The changes of a scenario, with those that ``--plant`` and ``--safety`` stand for."""
-    if plant is not None:
-        changes = (*changes, f'plant.name="{plant}"')
-    if safety is not None:
-        changes = (*changes, f'safety.filter="{safety}"')
-    return changes

@@ -47,13 +47,14 @@ def run(
     and own law as they were. What options change is told.
     """
     from scenarios.definition.experiment import open_experiment, require_safety
+    from scenarios.definition.load import changed
     from scenarios.one_run import run_to_folder
     from scenarios.storage import again
     from scenarios.terminal import new_console
 
     if scenario.endswith(".py"):
         raise InputError(f"{scenario}: a script, not a scenario; expected `formation script {scenario}`")
-    changes = options.changed(changes, plant, safety)
+    changes = changed(changes, plant, safety)
     if again.is_recorded(scenario):
         experiment, seed_before = again.open_again(scenario, changes, duration)
         click.echo(plain(again.notice(scenario, seed_before, seed, changes, duration)))

@@ -105,6 +105,12 @@ def load(scenario: str, changes: Sequence[str] = ()) -> ScenarioFile:
     return ScenarioFile(path.stem, scenario, head_comment(text), validated, law)
 
 
+def changed(changes: tuple[str, ...], plant: str | None = None, safety: str | None = None) -> tuple[str, ...]:
+    """The changes of a scenario, with those that ``--plant`` and ``--safety`` stand for."""
+    meant = {"plant.name": plant, "safety.filter": safety}
+    return (*changes, *(f'{key}="{value}"' for key, value in meant.items() if value is not None))
+
+
 def with_changes(data: dict[str, Any], changes: Sequence[str]) -> dict[str, Any]:
     """The same parsed scenario, changed by ``key=value`` texts as :func:`load` takes them.
 

@@ -2,9 +2,10 @@
 
 from scenarios.figures.catalogue import FIGURES as FIGURES
 from scenarios.figures.catalogue import OVERVIEW as OVERVIEW
+from scenarios.figures.catalogue import draw as draw
 from scenarios.figures.catalogue import names_for as names_for
 from scenarios.figures.catalogue import plot as plot
 from scenarios.figures.films.encode import animate as animate
 from scenarios.figures.style import FORMATS as FORMATS
 
-__all__ = ["FIGURES", "FORMATS", "OVERVIEW", "animate", "names_for", "plot"]
+__all__ = ["FIGURES", "FORMATS", "OVERVIEW", "animate", "draw", "names_for", "plot"]

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from scenarios.definition.experiment import Experiment
+from scenarios.errors import InputError, did_you_mean
 from scenarios.figures.decay import decay
 from scenarios.figures.graphs import graph
 from scenarios.figures.motion import motion
@@ -39,6 +40,20 @@ def names_for(experiment: Experiment) -> list[str]:
 
 
 @np.errstate(over="ignore", invalid="ignore")  # a diverged run has a figure too
+def draw(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, name: str) -> Figure:
+    """A figure by its name, in the style of print.
+
+    Raises:
+        InputError: there is none of that name.
+    """
+    if name not in FIGURES:
+        raise InputError(f"figure {name[:40]!r}: {did_you_mean(name, FIGURES)}")
+    make: Draw = FIGURES[name]
+    with print_style():
+        return make(experiment, trajectory, metrics)
+
+
+@np.errstate(over="ignore", invalid="ignore")  # a diverged run has a figure too
 def plot(
     experiment: Experiment,
     trajectory: Trajectory,
@@ -58,8 +73,7 @@ def plot(
     written = []
     with print_style(), np.errstate(over="ignore", invalid="ignore"):  # a diverged run is an outcome, not a warning
         for name in names:
-            draw: Draw = FIGURES[name]
-            figure = draw(experiment, trajectory, metrics)
+            figure = draw(experiment, trajectory, metrics, name)
             for form in formats:
                 path = folder / f"figure-{name}.{form}"
                 write_whole(path, render(figure, form))

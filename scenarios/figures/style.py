@@ -9,6 +9,7 @@ from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
+from matplotlib.backend_bases import RendererBase
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -80,9 +81,24 @@ def print_style() -> Iterator[None]:
         yield
 
 
+class PrintedFigure(Figure):
+    """A figure that looks as in print wherever it is drawn or saved: fonts of formulas are looked up only then."""
+
+    def draw(self, renderer: RendererBase) -> None:
+        with print_style():
+            super().draw(renderer)
+
+    def savefig(self, fname: Any, **options: Any) -> None:
+        with print_style():
+            super().savefig(fname, **options)
+
+    def _repr_png_(self) -> bytes:
+        return render(self, "png")
+
+
 def sheet(height: float, width: float = COLUMN) -> Figure:
     """An empty figure, inches, without a window."""
-    figure = Figure(figsize=(width, height), dpi=DOTS_PER_INCH)
+    figure = PrintedFigure(figsize=(width, height), dpi=DOTS_PER_INCH)
     FigureCanvasAgg(figure)
     return figure
 

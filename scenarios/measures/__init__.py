@@ -10,6 +10,7 @@ __all__ = [
     "result",
     "safety_result",
     "script_result",
+    "series",
     "tracking",
     "window",
 ]

@@ -1,0 +1,22 @@
+"""Frames, where their package is installed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from scenarios.errors import InputError
+
+
+def pandas() -> Any:
+    """The package, loaded when the first frame is asked for.
+
+    Raises:
+        InputError: it is missing.
+    """
+    try:
+        import pandas as package
+    except ImportError as error:
+        raise InputError(
+            f"tables need the package pandas, the extra 'notebook' of angle-formation ({error})"
+        ) from error
+    return package
