@@ -44,7 +44,7 @@ HEAVY_HOMES = {
 }
 """Packages that take their time to load, and the rooms whose files may load them when they are imported themselves."""
 
-GROUND = {"__init__", "__main__", "documents", "errors", "one_run", "one_script", "replay", "terminal"}
+GROUND = {"__init__", "__main__", "documents", "errors", "one_run", "replay", "terminal"}
 """The files of ``scenarios/`` itself."""
 
 DENIALS = {"no", "not", "nothing", "nor"}

@@ -50,7 +50,7 @@ def script(
     raises, or where the testbed would reject it.
     """
     from scenarios.errors import InputError
-    from scenarios.one_script import Settings, run_script
+    from scenarios.scripts.one_script import Settings, run_script
     from scenarios.simulation.script.script_file import read
     from scenarios.terminal import new_console
 
