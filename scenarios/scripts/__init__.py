@@ -1,6 +1,6 @@
 """One run of somebody's script for the Robotarium, to its run folder: what ``one_run`` is for a scenario.
 
-How a script is executed and drawn is not here but in ``simulation`` and ``figures``; this room only calls them in order.
+How a script is executed and drawn is not here but in ``simulation`` and ``figures``; this room calls them in order.
 """
 
 __all__ = ["one_script"]
