@@ -2,6 +2,7 @@
 
 import ast
 import re
+import runpy
 from pathlib import Path
 
 import numpy as np
@@ -52,3 +53,14 @@ def test_the_python_of_the_documents_runs_as_it_stands(tmp_path: Path, monkeypat
     assert np.linalg.norm(names["world"].points - names["places"], axis=1).max() < 0.01
     assert np.abs(names["errors"]).sum(axis=1).max() < 0.01
     assert names["result"]["outcome"] == "converged"
+
+
+def test_the_page_of_closed_forms_has_the_rows_that_its_command_computes() -> None:
+    """Those that take no long simulation; tests/evidence/test_theory.py compares the whole page."""
+    command = runpy.run_path(str(ROOT / "docs" / "theory.py"))
+    page = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
+    rows = [command["line"](row) for part in ("growth", "dwell") for row in command[part]()]
+    assert len(rows) == 8
+    assert [row for row in rows if row not in page.splitlines()] == []
+    assert page.startswith(command["HEAD"])
+    assert page.endswith(command["TAIL"])

@@ -1,5 +1,7 @@
 """The text of a script that runs a scenario's law on the Robotarium: numpy, ``rps`` and nothing else."""
 
+# Longer than 300 lines: half of them are the script's own text.
+
 from __future__ import annotations
 
 import textwrap
@@ -32,29 +34,34 @@ def script(experiment: Experiment, seed: int = 0) -> str:
     poses = start_poses(experiment, seed).tolist()
     observer, observed = (column[1:].tolist() for column in experiment.graph.edges.T)
     edges = [
-        (repr(agents.number(k)), repr(agents.number(i)), number(gain))
+        (repr(experiment.number(k)), repr(experiment.number(i)), number(gain))
         for k, i, gain in zip(observer, observed, law.gains.ravel().tolist(), strict=True)
     ]
     angles = [
-        (*(repr(agents.number(row)) for row in triple), repr(target))
+        (*(repr(experiment.number(row)) for row in triple), repr(target))
         for triple, target in zip(experiment.angles.triples.tolist(), experiment.target_angles.tolist(), strict=True)
     ]
     steered = experiment.first_follower != "stationary"
     filtered = experiment.scenario.safety.filter != "none"
+    leader, first = (experiment.number(row) for row in (agents.LEADER, agents.FIRST_FOLLOWER))
+    renumbered = _renumbered(experiment)
     return _SCRIPT.format(
         introduction=_introduction(experiment, seed),
         certificate_import=_CERTIFICATE_IMPORT if filtered else "",
         n=experiment.n,
+        whom="those of AGENTS" if renumbered else "agents 1 to N",
+        numbers=_numbers(experiment) if renumbered else "",
+        indices=_BY_NUMBER if renumbered else _BY_ROW,
         period=CONTROL_PERIOD,
         start=table([repr(value) for value in pose] for pose in poses),
         edges=table(edges),
         phases=table(_phases(experiment)),
-        told=", and agent 2 as seen from agent 1" if steered else "",
+        told=f", and agent {first} as seen from agent {leader}" if steered else "",
         argument=", delta" if steered else "",
         angles=table(angles),
         ahead=experiment.nid.projection_distance,
         constants=_constants(experiment),
-        first_follower=_FIRST_FOLLOWER[experiment.first_follower],
+        first_follower=_FIRST_FOLLOWER[experiment.first_follower].format(number=first),
         scaling=_SCALING if experiment.scenario.robot.saturation == "scale" else "",
         certificate=_certificate(experiment) if filtered else "",
         filtering=_FILTERING if filtered else "",
@@ -107,6 +114,11 @@ def prose(text: str) -> str:
 
 def _introduction(experiment: Experiment, seed: int) -> str:
     title = experiment.scenario.title.strip().rstrip(".") or experiment.file.name
+    named = (
+        "agents have the scenario's numbers"
+        if _renumbered(experiment)
+        else "agents are numbered from 1, as in the paper"
+    )
     return "\n\n".join(
         [
             prose(f"{title}."),
@@ -118,7 +130,7 @@ def _introduction(experiment: Experiment, seed: int) -> str:
                 "Every follower measures the relative positions of two others and steers the angles of their triangle "
                 'to those of the target: Li, Shen, Jing, Song, "Angle-Constrained Formation Control under Directed '
                 'Non-Triangulated Sensing Graphs", Automatica. Points and velocities in the plane are complex numbers '
-                "x + iy, in m and m/s; agents are numbered from 1, as in the paper."
+                f"x + iy, in m and m/s; {named}."
             ),
         ]
     )
@@ -158,16 +170,43 @@ def _certificate(experiment: Experiment) -> str:
     )
 
 
+def _renumbered(experiment: Experiment) -> bool:
+    return experiment.numbers != tuple(range(1, experiment.n + 1))
+
+
+def _numbers(experiment: Experiment) -> str:
+    listed = ", ".join(map(str, experiment.numbers))
+    line = f"AGENTS = [{listed}]"
+    if len(line) > WIDTH:
+        line = "AGENTS = [\n" + "".join(f"    {each},\n" for each in experiment.numbers) + "]"
+    return f"# The agents' numbers, in the order of START.\n{line}\n\n"
+
+
 _FIRST_FOLLOWER = {
     "stationary": "",
-    "displacement": "    u[1] = delta - (p[1] - p[0])  # agent 2, the first follower\n",
-    "distance": "    e = p[1] - p[0]  # agent 2, the first follower\n    u[1] = (abs(delta) ** 2 - abs(e) ** 2) * e\n",
+    "displacement": "    u[1] = delta - (p[1] - p[0])  # agent {number}, the first follower\n",
+    "distance": (
+        "    e = p[1] - p[0]  # agent {number}, the first follower\n    u[1] = (abs(delta) ** 2 - abs(e) ** 2) * e\n"
+    ),
     "bearing": (
-        "    b = (p[1] - p[0]) / abs(p[1] - p[0])  # agent 2, the first follower\n"
+        "    b = (p[1] - p[0]) / abs(p[1] - p[0])  # agent {number}, the first follower\n"
         "    wanted = delta / abs(delta)\n"
         "    u[1] = wanted - b * (b.conjugate() * wanted).real\n"
     ),
 }
+
+_BY_ROW = """\
+FOLLOWER, MEASURED = np.array([edge[:2] for edge in EDGES]).T - 1
+GAIN = np.array([edge[2] for edge in EDGES])
+VERTEX, FROM, TO = np.array([angle[:3] for angle in ANGLES]).T - 1
+"""
+
+_BY_NUMBER = """\
+ROW = {agent: row for row, agent in enumerate(AGENTS)}
+FOLLOWER, MEASURED = np.array([[ROW[k] for k in edge[:2]] for edge in EDGES]).T
+GAIN = np.array([edge[2] for edge in EDGES])
+VERTEX, FROM, TO = np.array([[ROW[k] for k in angle[:3]] for angle in ANGLES]).T
+"""
 
 _SCALING = """\
     # Slow both wheels by one factor: the testbed would clip each by itself,
@@ -210,7 +249,7 @@ SHOW_FIGURE = True  # False: no figure, and as fast as the computer can
 N = {n}
 PERIOD = {period}  # s, between two commands
 
-# Where the axles' centres start: x (m), y (m), heading (rad); agents 1 to N.
+{numbers}# Where the axles' centres start: x (m), y (m), heading (rad); {whom}.
 START = [
 {start}
 ]
@@ -233,10 +272,7 @@ GOAL = {goal}  # rad, for the sum of all angle errors
 
 AHEAD = {ahead}  # m, from the axle's centre to the point that the law steers
 {constants}
-FOLLOWER, MEASURED = np.array([edge[:2] for edge in EDGES]).T - 1
-GAIN = np.array([edge[2] for edge in EDGES])
-VERTEX, FROM, TO = np.array([angle[:3] for angle in ANGLES]).T - 1
-TARGET = np.array([angle[3] for angle in ANGLES])
+{indices}TARGET = np.array([angle[3] for angle in ANGLES])
 
 
 def law(p{argument}):

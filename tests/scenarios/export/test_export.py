@@ -234,3 +234,38 @@ def test_export_prints_or_writes_and_replaces_nothing_unasked(
     assert code == 2
     assert problem.count("\n") == 1
     assert sorted(path.name for path in tmp_path.rglob("*.py")) == ["shape.py"]
+
+
+NUMBERED = """
+title = "Five robots with numbers of their own"
+graph = "subgraph"
+leaders = [7, 3]
+agents = [
+  { id = 3, neighbours = [7], target = [0.5, 0.0], start = [0.6, -0.1] },
+  { id = 5, neighbours = [3, 9], target = [0.2, 0.7], start = [-0.1, 0.5] },
+  { id = 7, target = [0.0, 0.0], start = [0.0, -0.2] },
+  { id = 9, neighbours = [3, 7], target = [0.6, 0.6], start = [0.9, 0.5] },
+  { id = 1, neighbours = [9, 7], target = [-0.4, 0.3], start = [-0.8, 0.3] },
+]
+law = { first_follower = "displacement" }
+phases = [{ name = "gather", duration_s = 6.6, displacement_m = [0.6, 0.1] }]
+plant = { name = "saturated" }
+safety = { filter = "none" }
+"""
+
+
+def test_agents_keep_their_own_numbers_in_the_script(on_testbed: Runner, tmp_path: Path) -> None:
+    (tmp_path / "numbered.toml").write_text(NUMBERED, encoding="utf-8")
+    experiment = open_experiment(str(tmp_path / "numbered.toml"))
+    assert experiment.numbers[:2] == (7, 3)
+    text = script(experiment, 2)
+    assert f"AGENTS = {list(experiment.numbers)}" in text
+    assert "u[1] = delta - (p[1] - p[0])  # agent 3, the first follower" in text
+    assert "and agent 3 as seen from agent 7" in text
+    (edges,) = (
+        eval(ast.unparse(node.value))
+        for node in ast.parse(text).body
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "EDGES"
+    )
+    assert {edge[:2] for edge in edges} == {(9, 3), (9, 7), (5, 3), (5, 9), (1, 9), (1, 7)}
+    assert_same_motion(on_testbed(text, "saturated"), experiment, 2, 1e-7)
