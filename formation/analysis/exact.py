@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import count, islice
 
 import numpy as np
@@ -27,6 +28,9 @@ NODES = 8
 LONGEST_STEP = 0.1
 """Seconds: over this, and over no more than the nearest singularity of e(t) is away, the nodes err below rounding."""
 
+KEPT = 64
+"""Stretches that are kept for the next phase of the same loop: many short phases have few lengths."""
+
 ROW = agents.FIRST_ORDINARY
 
 
@@ -39,7 +43,6 @@ def follow(cascade: Cascade, start: Complex, first: Motion, step: float) -> Iter
         first: e_12(t) (...), the displacement of agent 2 from agent 1.
         step: seconds.
     """
-    stretches: dict[int, _Stretch] = {}  # by how often the step is halved
     q = start - start[agents.LEADER]
     for index in count(1):
         yield q
@@ -50,9 +53,7 @@ def follow(cascade: Cascade, start: Complex, first: Motion, step: float) -> Iter
             halvings = max(0, int(np.ceil(np.log2(step / longest))))
             while done + 0.5**halvings > 1.0:
                 halvings += 1
-            if halvings not in stretches:
-                stretches[halvings] = _Stretch.over(cascade, step * 0.5**halvings)
-            state = stretches[halvings].advance(state, first, begin + done * step)
+            state = _Stretch.over(cascade, step * 0.5**halvings).advance(state, first, begin + done * step)
             done += 0.5**halvings
         q = np.empty_like(q)
         q[agents.LEADER], q[agents.FIRST_FOLLOWER], q[ROW:] = 0.0, first.at(np.asarray(step * index)), state
@@ -67,6 +68,7 @@ class _Stretch:
     kernels: Complex
 
     @classmethod
+    @lru_cache(maxsize=KEPT)
     def over(cls, cascade: Cascade, h: float) -> _Stretch:
         roots, weights = np.polynomial.legendre.leggauss(NODES)
         nodes = (roots + 1.0) * (h / 2.0)

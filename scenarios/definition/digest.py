@@ -36,6 +36,7 @@ LATER_KEYS = (
     ("sensor", "sensing_range_m"),
     ("sensor", "field_of_view_deg"),
     ("events",),
+    ("goal", "distance_m"),
 )
 """Keys that came after the first baselines: at their defaults they are not in a scenario's digest."""
 

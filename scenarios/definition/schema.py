@@ -371,6 +371,9 @@ class GoalTable(Table):
     the signed errors over the last 10 s."""
     accepted: Flag = False
     """Whether the testbed has to accept the run besides."""
+    distance_m: Positive | None = None
+    """Bound besides on how far any agent may be from its place on the predicted way, from when all first keep it to the
+    end: what a gap holds up has missed it, though it catches up."""
 
 
 class Scenario(Table):

@@ -17,7 +17,7 @@ from formation import agents, decay_rates, end_configuration
 from scenarios.definition.experiment import Experiment
 from scenarios.figures.palette import INK, agent_colour
 from scenarios.figures.style import COLUMN, SMALL, panel, sheet
-from scenarios.figures.timelines import MANY, TIME
+from scenarios.figures.timelines import MANY, TIME, few_phases
 from scenarios.measures.late_rates import predicted_late_rates
 from scenarios.measures.metrics import Metrics
 from scenarios.measures.predictions.theory import motion, moves_exactly
@@ -40,6 +40,8 @@ DASHED = (0, (3.0, 1.5))
 
 def decay(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> Figure:
     """The distance of each follower from its place beside the exact solution, one panel per phase."""
+    if not few_phases(experiment):
+        return _whole(experiment, trajectory, metrics)
     indices = np.unique(trajectory.phase).tolist()
     slowest = _slowest(experiment, trajectory)
     handles = _legend(experiment, slowest)
@@ -53,6 +55,26 @@ def decay(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> F
             axes.set_title(title, loc="left")
         if place == 0:
             axes.set_xlabel("time since the start of the phase (s)" if len(indices) > 1 else TIME)
+    figure.legend(
+        handles=handles, loc="lower center", ncols=COLUMNS, bbox_to_anchor=(0.5, 0.03 / figure.get_figheight())
+    )
+    return figure
+
+
+def _whole(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> Figure:
+    """One panel over the whole run, of phases too many for a panel each: distances from the moving place (Theorem 2)."""
+    handles = [handle for handle in _legend(experiment, None) if handle.get_label() != "exact solution"]
+    bottom = 0.40 + 0.105 * -(-len(handles) // COLUMNS)
+    figure = sheet(bottom + PANEL + GAP - 0.12)
+    axes = panel(figure, LEFT, bottom, COLUMN - LEFT - RIGHT, PANEL)
+    distances = metrics.tracking.distances
+    for row in experiment.target.graph.followers.tolist():
+        axes.semilogy(trajectory.t, distances[:, row], color=agent_colour(row), linewidth=0.9)
+    far = np.nanmax(distances[:, agents.FIRST_ORDINARY :])
+    axes.set(xlim=(0.0, trajectory.t[-1]), ylim=(NEAREST, 2.5 * far), ylabel="distance (m)", xlabel=TIME)
+    axes.yaxis.set_major_locator(LogLocator(numticks=5))
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.set_title(f"{len(experiment.phases)} phases", loc="left")
     figure.legend(
         handles=handles, loc="lower center", ncols=COLUMNS, bbox_to_anchor=(0.5, 0.03 / figure.get_figheight())
     )

@@ -7,13 +7,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from formation.plane import Complex, Real, as_complex
 from scenarios.definition.experiment import Experiment
 from scenarios.figures.floor import Limits, draw_edges, draw_robots, draw_trails, limits, prepare
 from scenarios.figures.happenings import mark_places, mark_times, words_height, write_words
 from scenarios.figures.labels import Labels, points_per_metre
 from scenarios.figures.palette import INK
 from scenarios.figures.style import COLUMN, SMALL, panel, sheet
-from scenarios.figures.timelines import MANY, draw_error_sum, draw_errors, mark_phases
+from scenarios.figures.timelines import MANY, few_phases, draw_error_sum, draw_errors, mark_phases
 from scenarios.measures.metrics import Metrics
 from scenarios.simulation.trajectory import Trajectory
 
@@ -25,6 +26,15 @@ TALLEST_FLOOR = 3.2
 ROOM_FOR_TIMES = 0.04
 """Room above the highest robot, where snapshots are labelled with their times, as a share of the width."""
 
+SNAPSHOTS = 4
+"""States that are drawn of a motion that changes all the time, where there is room for them."""
+
+CLEAR = 2.0
+"""Least distance of two robots in two of them, in circles about a chassis."""
+
+MOST_LOOKED_AT = 500
+"""States among which they are chosen."""
+
 FIRST_GREY, LAST_GREY = 0.82, 0.30
 """Edges of the snapshots, darker with time."""
 
@@ -32,7 +42,8 @@ FIRST_GREY, LAST_GREY = 0.82, 0.30
 def motion(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> Figure:
     """Start, end of each phase and trajectories on the floor; sum of the angle errors and each of them over time."""
     shown = limits(experiment.arena, trajectory.poses)
-    if len(experiment.phases) > 1:
+    timed = len(experiment.phases) > 1 or experiment.phases[0].reference is not None
+    if timed:
         shown = (*shown[:3], shown[3] + ROOM_FOR_TIMES * (shown[1] - shown[0]))
     width = COLUMN - LEFT - RIGHT
     height = width * (shown[3] - shown[2]) / (shown[1] - shown[0])
@@ -43,7 +54,8 @@ def motion(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> 
     legend = words + (0.11 * -(-len(experiment.angles) // 4) + 0.05 if named else 0.14)
     each = 0.34 + legend
     sums = each + EACH_HEIGHT + GAP
-    floor = sums + SUM_HEIGHT + (0.64 if len(experiment.phases) > 1 else 0.52)
+    named_phases = 1 < len(experiment.phases) and few_phases(experiment)
+    floor = sums + SUM_HEIGHT + (0.64 if named_phases else 0.52)
     figure = sheet(floor + height + 0.2)
     _floor(panel(figure, LEFT, floor, width, height), experiment, trajectory, metrics, shown)
     lower = panel(figure, LEFT, each, COLUMN - LEFT - RIGHT, EACH_HEIGHT)
@@ -56,7 +68,7 @@ def motion(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> 
     mark_times(lower, experiment)
     write_words(figure, experiment)
     upper.tick_params(labelbottom=False)
-    above = 1.20 if len(experiment.phases) > 1 else 1.04
+    above = 1.20 if named_phases else 1.04
     upper.legend(loc="lower center", bbox_to_anchor=(0.5, above), ncols=3)
     if named:
         handles, names = lower.get_legend_handles_labels()
@@ -74,7 +86,7 @@ def _floor(axes: Axes, experiment: Experiment, trajectory: Trajectory, metrics: 
     prepare(axes, experiment.arena, shown)
     few = experiment.n <= MANY
     draw_trails(axes, trajectory, 0.7 if few else 0.3)
-    rows = snapshot_rows(trajectory, metrics)
+    rows = snapshot_rows(experiment, trajectory, metrics)
     for row, grey in zip(rows, np.linspace(FIRST_GREY, LAST_GREY, len(rows)), strict=True):
         if few:
             draw_edges(axes, experiment.of_phase(trajectory.phase[row]).graph, trajectory.points[row], f"{grey:.3f}")
@@ -90,16 +102,42 @@ def _floor(axes: Axes, experiment: Experiment, trajectory: Trajectory, metrics: 
             marker="s",
             markersize=4,
             color=INK,
-            label="end" if len(rows) == 2 else "end of a phase",
+            label=_filled(experiment, rows),
         ),
     ]
     axes.legend(handles=markers, loc="lower right", bbox_to_anchor=(1.0, 1.02), ncols=2)
 
 
-def snapshot_rows(trajectory: Trajectory, metrics: Metrics) -> list[int]:
-    """Rows of the trajectory that are drawn: the start, each phase's end, and the last finite state of a cut run."""
+def _filled(experiment: Experiment, rows: list[int]) -> str:
+    """What a filled robot stands for."""
+    if len(rows) == 2:
+        return "end"
+    return "end of a phase" if len(experiment.phases) > 1 and few_phases(experiment) else "on the way, end"
+
+
+def snapshot_rows(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> list[int]:
+    """Rows of the trajectory that are drawn: the start, each phase's end, and the last finite state of a cut run.
+
+    On a reference, or where phases are many, the start, the end, and what is farthest from these on the way.
+    """
     last = int(np.flatnonzero(np.isfinite(trajectory.poses).all(axis=(1, 2)))[-1])
-    return sorted({0, *(end.row for end in metrics.phases), last})
+    if few_phases(experiment) and experiment.phases[0].reference is None:
+        return sorted({0, *(end.row for end in metrics.phases), last})
+    if experiment.n > MANY:
+        return sorted({0, last})
+    stride, rows = max(1, last // MOST_LOOKED_AT), [0, last]
+    places = as_complex(trajectory.points[: last + 1 : stride])
+    nearest = np.minimum(_nearest(places, places[0]), _nearest(places, as_complex(trajectory.points[last])))
+    while len(rows) < SNAPSHOTS and nearest.max() > CLEAR * experiment.robot.chassis.radius:
+        farthest = int(nearest.argmax())
+        rows.append(stride * farthest)
+        nearest = np.minimum(nearest, _nearest(places, places[farthest]))
+    return sorted(set(rows))
+
+
+def _nearest(places: Complex, state: Complex) -> Real:
+    """(T,) how near any robot of the states (T, n) comes to any of another state (n,), metres."""
+    return np.abs(places[..., None] - state).min(axis=(1, 2))
 
 
 def _label(axes: Axes, experiment: Experiment, trajectory: Trajectory, rows: list[int]) -> None:

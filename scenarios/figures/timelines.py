@@ -22,12 +22,22 @@ TIME = "\U0001d461 (s)"
 DASHES = ("-", "--", ":", "-.")
 """Line styles of the angles at one vertex, in their order."""
 
+MOST_PHASES = 8
+"""More phases than this are no parts of a figure."""
+
 MANY = 12
 """More lines than this get no legend of their own."""
 
 
+def few_phases(experiment: Experiment) -> bool:
+    """Whether phases are so few that each has its name, its snapshot and its panel."""
+    return len(experiment.phases) <= MOST_PHASES
+
+
 def mark_phases(axes: Axes, experiment: Experiment, names: bool = False) -> None:
-    """A line at each boundary between phases, and their names above the axes if ``names``."""
+    """A line at each boundary between phases, and their names above the axes if ``names``; nothing where these are many."""
+    if not few_phases(experiment):
+        return
     ends = np.cumsum([phase.duration for phase in experiment.phases])
     for end in ends[:-1]:
         axes.axvline(end, color=INK, linewidth=0.5, linestyle=(0, (4, 2)), zorder=1)

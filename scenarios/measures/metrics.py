@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from robots.testbed import Separation, Verdict, collision_centres, judge, separation
 from scenarios.definition.experiment import Experiment
+from scenarios.measures.clearance import Clearance, clearance
 from scenarios.measures.late_rates import measured_late_rates
 from scenarios.measures.tracking import Tracking, predicted_ends, track
 from scenarios.measures.window import WINDOW, Window, trailing
@@ -52,6 +53,7 @@ class Metrics:
         judged: (T,) what the goal bounds: ``error_sum``, or the absolute sum of the window's means.
         settling_time: seconds after which ``judged`` stays below the goal; None if it does not.
         separation: of the collision centres.
+        clearance: from walls and obstacles; None on a floor with neither.
         tracking: of scale, orientation and translation.
         late_rates: of the followers' distances, 1/s, as measured; None where there is too little to fit.
         phases: the state at the end of each phase that the run completed.
@@ -64,6 +66,7 @@ class Metrics:
     judged: Real
     settling_time: float | None
     separation: Separation
+    clearance: Clearance | None
     verdict: Verdict
     tracking: Tracking
     late_rates: list[float | None]
@@ -94,11 +97,12 @@ def measure(experiment: Experiment, trajectory: Trajectory) -> Metrics:
         judged=judged,
         settling_time=settling_time(trajectory.t, judged, experiment.goal),
         separation=near,
+        clearance=clearance(experiment, trajectory),
         verdict=verdict,
         tracking=tracking,
         late_rates=measured_late_rates(experiment, trajectory),
         phases=_phase_ends(experiment, trajectory, errors, axle_errors, tracking),
-        outcome=_outcome(experiment, trajectory, judged, verdict),
+        outcome=_outcome(experiment, judged, verdict, tracking, trajectory),
     )
 
 
@@ -136,9 +140,19 @@ def _phase_ends(
     return tuple(ends)
 
 
-def _outcome(experiment: Experiment, trajectory: Trajectory, judged: Real, verdict: Verdict) -> Outcome:
+def _outcome(
+    experiment: Experiment, judged: Real, verdict: Verdict, tracking: Tracking, trajectory: Trajectory
+) -> Outcome:
     if not np.isfinite(trajectory.poses[-1]).all():
         return "diverged"
-    if not judged[-1] < experiment.goal:
+    if not judged[-1] < experiment.goal or not _stayed(tracking.distances, experiment.scenario.goal.distance_m):
         return "not_converged"
     return "rejected" if experiment.scenario.goal.accepted and not verdict.accepted else "converged"
+
+
+def _stayed(distances: Real, bound: float | None) -> bool:
+    """Whether distances (T, n) from the predicted places, once all below a bound, stay so to the end."""
+    if bound is None:
+        return True
+    within = (distances < bound).all(axis=1)
+    return bool(within.any() and within[int(within.argmax()) :].all())

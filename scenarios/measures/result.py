@@ -10,6 +10,7 @@ import numpy as np
 
 from robots.testbed import Occurrence, Violation
 from scenarios.definition.experiment import Experiment
+from scenarios.measures.clearance import Nearest, thing_name
 from scenarios.measures.contacts import contacts
 from scenarios.measures.happenings import happenings
 from scenarios.measures.late_rates import predicted_late_rates
@@ -63,6 +64,7 @@ def result(experiment: Experiment, seed: int, trajectory: Trajectory, metrics: M
             "time_s": float(trajectory.t[closest]),
             "agents": experiment.numbered(metrics.separation.pairs[closest]).tolist(),
         },
+        "clearance": _clearance(experiment, trajectory, metrics),
         "contacts": contacts(experiment, trajectory),
         "testbed": {
             "accepted": metrics.verdict.accepted,
@@ -114,6 +116,24 @@ def _against_prediction(experiment: Experiment, tracking: Tracking, end: PhaseEn
         "predicted_m": end.predicted.tolist(),
         "distance_m": [_number(d) for d in end.distances],
     }
+
+
+def _clearance(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> dict[str, Any] | None:
+    """The smallest distances from walls and obstacles, of a projected point and of a hull; null without either."""
+    if metrics.clearance is None:
+        return None
+
+    def lowest(nearest: Nearest) -> dict[str, Any]:
+        step = nearest.lowest
+        return {
+            "distance_m": _number(nearest.distance[step]),
+            "time_s": float(trajectory.t[step]),
+            "agent": experiment.number(int(nearest.row[step])),
+            "thing": thing_name(int(nearest.thing[step])),
+        }
+
+    hulls = metrics.clearance.hulls
+    return {"point": lowest(metrics.clearance.points), "hull": None if hulls is None else lowest(hulls)}
 
 
 def versions() -> dict[str, str]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from robots.testbed import Separation, collision_centres, separation
 from scenarios.definition.experiment import Experiment
+from scenarios.measures.clearance import Clearance, clearance
 from scenarios.measures.metrics import Metrics
 from scenarios.simulation.trajectory import Trajectory
 
@@ -30,6 +31,7 @@ class Piece:
         angle_errors: (T, m) radians.
         error_sum: (T,) their absolute sum.
         separation: of the collision centres.
+        clearance: from walls and obstacles; None on a floor with neither.
     """
 
     experiment: Experiment
@@ -38,6 +40,7 @@ class Piece:
     angle_errors: Real
     error_sum: Real
     separation: Separation
+    clearance: Clearance | None
 
     @property
     def t(self) -> Real:
@@ -54,7 +57,13 @@ class Piece:
 def whole(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> Piece:
     """The whole of a measured run."""
     return Piece(
-        experiment, trajectory.points[0], trajectory, metrics.angle_errors, metrics.error_sum, metrics.separation
+        experiment,
+        trajectory.points[0],
+        trajectory,
+        metrics.angle_errors,
+        metrics.error_sum,
+        metrics.separation,
+        metrics.clearance,
     )
 
 
@@ -69,4 +78,5 @@ def rows(experiment: Experiment, trajectory: Trajectory, first: int, end: int) -
         errors,
         np.abs(errors).sum(axis=-1),
         separation(collision_centres(part.poses)),
+        clearance(experiment, part),
     )

@@ -31,6 +31,7 @@ MOTION: tuple[Callable[[Recorder, Piece], None], ...] = (
     plots.error_sum,
     plots.wheel_speeds,
     plots.separation,
+    plots.clearance,
     plots.interventions,
     plots.tracking,
     timeline.phases,

@@ -7,6 +7,9 @@ from typing import Any
 NO_PREDICTION = "no closed-form prediction for an own law or a leaderless one: `formation audit` measures what it does"
 """What stands where the theory speaks of the other laws."""
 
+MOST_PHASES = 12
+"""Phases that a table tells of."""
+
 ROUNDED = 5e-5
 """Coordinates below this are written as zero."""
 
@@ -30,3 +33,14 @@ def place(point: Any) -> str:
         return "nowhere"
     x, y = (float(c) + 0.0 if abs(c) > ROUNDED else 0.0 for c in point)
     return f"({x:.4g}, {y:.4g})"
+
+
+def chosen(count: int) -> tuple[int, ...]:
+    """Which of so many phases a table tells of: all, or so many that are equally far apart, the last among them.
+
+    >>> chosen(3), chosen(720)[:2], chosen(720)[-1], len(chosen(720))
+    ((0, 1, 2), (59, 119), 719, 12)
+    """
+    if count <= MOST_PHASES:
+        return tuple(range(count))
+    return tuple((count * part) // MOST_PHASES - 1 for part in range(1, MOST_PHASES + 1))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from scenarios.documents import cell
 from scenarios.measures.late_rates import expected_late_rates
 from scenarios.measures.predictions.forecast import NEAR, PhaseForecast, forecast
 from scenarios.measures.predictions.remarks import remarks
-from scenarios.report.cells import NO_PREDICTION, digits, place
+from scenarios.report.cells import NO_PREDICTION, chosen, digits, place
 from scenarios.report.closed_forms import print_closed_forms
 from scenarios.report.course import print_course
 from scenarios.report.happenings import print_plan
@@ -27,12 +28,13 @@ def print_experiment(console: Console, experiment: Experiment, seed: int) -> Non
     if experiment.file.description:
         console.print(escape(experiment.file.description), style="dim")
     start = experiment.initial_points(seed)
-    predicted = forecast(experiment, start)
+    shown = chosen(len(experiment.phases))
+    predicted = forecast(experiment, start, shown)
     _print_assumptions(console, experiment, start)
     if experiment.formation is experiment.aim.target:
         _print_agents(console, experiment, start, predicted[-1].end)
     if experiment.predicted:
-        _print_forecast(console, experiment, predicted)
+        _print_forecast(console, experiment, predicted, shown)
     else:
         console.print(f"\n{NO_PREDICTION}")
     print_course(console, experiment, start)
@@ -124,7 +126,9 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
         console.print("(c3): a follower with a positive margin that starts after its neighbours settled avoids both")
 
 
-def _print_forecast(console: Console, experiment: Experiment, predicted: list[PhaseForecast]) -> None:
+def _print_forecast(
+    console: Console, experiment: Experiment, predicted: list[PhaseForecast], shown: Sequence[int]
+) -> None:
     table = new_table(
         "phase",
         "until (s)",
@@ -136,13 +140,13 @@ def _print_forecast(console: Console, experiment: Experiment, predicted: list[Ph
         "angle error sum (rad)",
         f"within {NEAR:g} m after (s)",
     )
-    until = 0.0
-    for index, (phase, ahead) in enumerate(zip(experiment.phases, predicted, strict=True)):
-        until += phase.duration
+    ends = np.cumsum([phase.duration for phase in experiment.phases])
+    for index in shown:
+        phase, ahead = experiment.phases[index], predicted[index]
         similarity = end_similarity(experiment.of_phase(index).formation, *ahead.end[: agents.FIRST_ORDINARY])
         table.add_row(
             escape(phase.name),
-            f"{until:g}",
+            f"{ends[index]:g}",
             place(phase.velocity),
             "-" if phase.delta is None else place(phase.delta),
             f"{similarity.scale:.4f}",
@@ -153,3 +157,5 @@ def _print_forecast(console: Console, experiment: Experiment, predicted: list[Ph
         )
     console.print("\n[bold]Predicted end of each phase, c R(theta) p* + xi, for ideal single integrators[/bold]")
     print_table(console, table)
+    if len(shown) < len(predicted):
+        console.print(f"{len(shown)} of {len(predicted)} phases, equally far apart")

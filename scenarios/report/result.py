@@ -9,7 +9,7 @@ from rich.markup import escape
 
 from formation import agents
 from scenarios.documents import cell
-from scenarios.report.cells import NO_PREDICTION, place
+from scenarios.report.cells import NO_PREDICTION, chosen, place
 from scenarios.report.happenings import print_happenings
 from scenarios.terminal import new_table, print_table
 
@@ -45,6 +45,7 @@ def print_result(console: Console, result: dict[str, Any]) -> None:
             f"smallest separation: {near['distance_m']:.3f} m at {near['time_s']:.1f} s, "
             f"agents {near['agents'][0]} and {near['agents'][1]}"
         )
+    _print_clearance(console, result["clearance"])
     _print_safety(console, result)
     if result["plant"] == "pymunk":
         console.print(f"contacts: {_contacts(result['contacts'])}")
@@ -53,6 +54,16 @@ def print_result(console: Console, result: dict[str, Any]) -> None:
     for violation in testbed["violations"]:
         console.print(f"  {_describe(violation)}")
     console.print(f"outcome: [bold]{result['outcome'].replace('_', ' ')}[/bold]")
+
+
+def _print_clearance(console: Console, clearance: dict[str, Any] | None) -> None:
+    """How near anyone came to a wall or an obstacle; nothing on a floor with neither."""
+    for what, near in (clearance or {}).items():
+        if near is not None and near["distance_m"] is not None:
+            console.print(
+                f"smallest clearance of a {what}: {near['distance_m']:.3f} m at {near['time_s']:.1f} s, "
+                f"agent {near['agent']} from {'the ' if 'wall' in near['thing'] else ''}{near['thing']}"
+            )
 
 
 def _print_window(console: Console, result: dict[str, Any]) -> None:
@@ -79,7 +90,8 @@ def _print_phases(console: Console, result: dict[str, Any]) -> None:
         "orientation error (rad)",
         "translation error (m)",
     )
-    for phase in result["phases"]:
+    shown = chosen(len(result["phases"]))
+    for phase in (result["phases"][index] for index in shown):
         table.add_row(
             escape(phase["name"]),
             f"{phase['end_s']:.1f}",
@@ -90,6 +102,8 @@ def _print_phases(console: Console, result: dict[str, Any]) -> None:
             cell(phase["translation_error_m"], ".1e"),
         )
     print_table(console, table)
+    if len(shown) < len(result["phases"]):
+        console.print(f"{len(shown)} of {len(result['phases'])} phases, equally far apart; result.json has all")
     console.print()
 
 

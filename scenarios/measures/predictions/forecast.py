@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,7 +36,7 @@ class PhaseForecast:
             solution does not cover the run.
         error_sum: sum of the absolute angle errors there, radians; None likewise.
         arrival: seconds into the phase after which every agent stays within :data:`NEAR` of its place; None likewise,
-            or if it never does.
+            if it never does, or where it was not asked for.
     """
 
     end: Real
@@ -45,18 +45,25 @@ class PhaseForecast:
     arrival: float | None
 
 
-def forecast(experiment: Experiment, start: Real) -> list[PhaseForecast]:
-    """The forecast of each phase from a start (n, 2), metres: Theorems 1 and 2 and the closed loop's exact solution."""
+def forecast(experiment: Experiment, start: Real, told: Collection[int] | None = None) -> list[PhaseForecast]:
+    """The forecast of each phase from a start (n, 2), metres: Theorems 1 and 2 and the closed loop's exact solution.
+
+    The arrival is the dear part: found for the phases with the indices ``told`` alone where these are given.
+    """
     here: Real | None = start if moves_exactly(experiment) else None
     forecasts = []
-    ends = predicted_ends(experiment, start)
-    for phase, end, shaped in zip(experiment.phases, ends, map(experiment.of_phase, range(len(ends))), strict=True):
+    shaped, loop, first = experiment, None, experiment.first_follower
+    for index, (phase, end) in enumerate(zip(experiment.phases, predicted_ends(experiment, start), strict=True)):
         if here is None:
             forecasts.append(PhaseForecast(end, None, None, None))
             continue
         steps = int(np.ceil(phase.duration / (2.0 * STEP)))
-        loop, first = Cascade.of(shaped.target, gains=shaped.own_gains), experiment.first_follower
-        arrived = arrival(_errors(loop, as_complex(here), phase, first, as_complex(end)), loop.reach, NEAR, STEP)
+        before, shaped = shaped, experiment.of_phase(index)
+        if loop is None or shaped is not before:
+            loop = Cascade.of(shaped.target, gains=shaped.own_gains)
+        arrived = None
+        if told is None or index in told:
+            arrived = arrival(_errors(loop, as_complex(here), phase, first, as_complex(end)), loop.reach, NEAR, STEP)
         here = points(ideal(loop, as_complex(here), phase, first, phase.duration / steps), steps)[-1]
         error_sum = float(np.abs(experiment.angles.errors(here, shaped.target_angles)).sum())
         forecasts.append(PhaseForecast(end, here, error_sum, arrived))

@@ -10,6 +10,7 @@ from formation import decay_rates
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.predictions.course import too_fast
 from scenarios.measures.predictions.misfits import misfits, start_misfits
+from scenarios.measures.predictions.way import in_the_way
 
 LEAST_EXPONENT = 1.0
 """Rate times duration below which a follower cannot settle: its distance has not even shrunk by the factor e."""
@@ -22,8 +23,10 @@ def remarks(experiment: Experiment, seed: int) -> list[str]:
     """One sentence for each thing that speaks against the run with that seed; `show`, `run` and `export` print them."""
     points, headings = experiment.starts.draw(np.random.default_rng(seed))
     told = [*start_misfits(experiment, points, headings), *misfits(experiment, points)]
+    met = [] if told else in_the_way(experiment, points)  # a way to where nobody fits is no other matter
     return [
         *(f"does not fit: {misfit}" for misfit in told),
+        *(f"in the way: {thing}" for thing in met),
         *(f"too slow: {slow}" for slow in _slow(experiment)),
         *(f"too fast: {fast}" for fast in too_fast(experiment, points)),
     ]

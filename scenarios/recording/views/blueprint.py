@@ -42,6 +42,9 @@ FIGURES = {
 }
 """Plots and their titles. A title says what a legend would: a legend hides what it explains."""
 
+BESIDE = {plots.CLEARANCE: "Walls, obstacles (m)"}
+"""How near a point and a hull come to walls and obstacles, behind the summary."""
+
 FILTER = {plots.INTERVENTIONS: "Filter (m/s)"}
 """What the safety filter changes, behind the summary."""
 
@@ -134,6 +137,7 @@ def notes(experiment: Experiment, root: str) -> rrb.Tabs:
             name="Events",
             columns=rrb.TextLogColumns(timeline_columns=[TIMELINE], text_log_columns=["loglevel", "body"]),
         ),
+        *(figures([root], BESIDE, length(experiment), {}) if experiment.arena.walls or experiment.arena.obstacles else []),
         *(figures([root], FILTER, length(experiment), {}) if experiment.safety != "none" else []),
         active_tab="Summary",
     )

@@ -18,7 +18,7 @@ from scenarios.recording.views import style
 from scenarios.recording.views.style import Colour
 
 ANGLES, ERROR_SUM, SEPARATION = "errors/angles", "errors/log10_sum", "separation"
-WHEELS, INTERVENTIONS = "wheels", "interventions"
+WHEELS, INTERVENTIONS, CLEARANCE = "wheels", "interventions", "clearance"
 SCALE, ORIENTATION, CENTROID = "tracking/scale", "tracking/orientation", "tracking/centroid"
 DISTANCE = "tracking/log10_distance"
 
@@ -34,6 +34,8 @@ def styles(recorder: Recorder, experiment: Experiment) -> None:
     _style(recorder, f"{ERROR_SUM}/goal", ["goal"], [style.GOAL])
     _style(recorder, f"{SEPARATION}/value", ["closest pair"], [recorder.colour])
     _style(recorder, f"{SEPARATION}/limit", ["testbed's limit"], [style.LIMIT])
+    _style(recorder, f"{CLEARANCE}/value", ["nearest point", "nearest hull"], [recorder.colour, style.SECOND])
+    _style(recorder, f"{CLEARANCE}/limit", ["filter's clearance"], [style.LIMIT])
     names = [f"{experiment.number(row)} {side}" for row in range(experiment.n) for side in ("left", "right")]
     _style(recorder, f"{WHEELS}/value", names, [style.agent_colour(row // 2) for row in range(2 * experiment.n)])
     _style(recorder, f"{WHEELS}/limit", ["limit", "limit"], [style.LIMIT] * 2)
@@ -73,6 +75,17 @@ def separation(recorder: Recorder, piece: Piece) -> None:
     """Distance of the closest pair of collision centres and the distance that the testbed demands, metres."""
     _series(recorder, f"{SEPARATION}/value", piece.t, piece.separation.distance)
     _level(recorder, f"{SEPARATION}/limit", piece, [COLLISION_DISTANCE])
+
+
+def clearance(recorder: Recorder, piece: Piece) -> None:
+    """Smallest distance of a projected point and of a hull from walls and obstacles, metres; nothing without these."""
+    if piece.clearance is None:
+        return
+    points, hulls = piece.clearance.points, piece.clearance.hulls
+    both = [points.distance] if hulls is None else [points.distance, hulls.distance]
+    _series(recorder, f"{CLEARANCE}/value", piece.t, np.stack(both, axis=-1))
+    if piece.experiment.safety != "none":
+        _level(recorder, f"{CLEARANCE}/limit", piece, [piece.experiment.filter_settings.clearance])
 
 
 def interventions(recorder: Recorder, piece: Piece) -> None:

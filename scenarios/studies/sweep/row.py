@@ -10,6 +10,7 @@ import numpy as np
 
 from scenarios.definition.experiment import Experiment, build
 from scenarios.errors import InputError
+from scenarios.measures.clearance import Clearance
 from scenarios.measures.metrics import measure
 from scenarios.measures.window import Window
 from scenarios.simulation.loop import simulate
@@ -44,6 +45,8 @@ class Row:
     rms_angle_error_sum_rad: float | None = None
     mean_errors_rad: str = ""
     rms_errors_rad: str = ""
+    min_clearance_m: float | None = None
+    min_hull_clearance_m: float | None = None
     message: str = ""
 
     def cells(self, varied: Sequence[str]) -> list[Any]:
@@ -100,7 +103,17 @@ def _row(experiment: Experiment, seed: int, trajectory: Trajectory) -> Row:
         accepted=metrics.verdict.accepted,
         violations=" ".join(violation.kind for violation in metrics.verdict.violations),
         **({} if metrics.window is None else _over_window(metrics.window)),
+        **({} if metrics.clearance is None else _clearances(metrics.clearance)),
     )
+
+
+def _clearances(clearance: Clearance) -> dict[str, Any]:
+    """The columns that only a floor with walls or obstacles fills."""
+    points, hulls = clearance.points, clearance.hulls
+    return {
+        "min_clearance_m": _finite(points.distance[points.lowest]),
+        "min_hull_clearance_m": None if hulls is None else _finite(hulls.distance[hulls.lowest]),
+    }
 
 
 def _over_window(window: Window) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from scenarios.studies.sweep.row import FAILED
 
 QUANTILES = (0.0, 0.05, 0.5, 0.95, 1.0)
 
-QUANTITIES = ("settling_time_s", "angle_error_sum_rad", "min_separation_m")
+QUANTITIES = ("settling_time_s", "angle_error_sum_rad", "min_separation_m", "min_clearance_m", "min_hull_clearance_m")
 """Columns whose quantiles are told."""
 
 Z_95 = 1.959963984540054
@@ -79,8 +79,8 @@ def summarise(rows: Iterator[Mapping[str, str]], count: int) -> Summary:
         elif row["outcome"] != "converged":
             missed.append(int(row["seed"]))
         for column, found in values.items():
-            if row[column]:
-                found.append(float(row[column]))
+            if cell := row.get(column):
+                found.append(float(cell))
     return Summary(
         runs=count,
         converged=Share.of(converged, count),

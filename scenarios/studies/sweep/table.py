@@ -19,6 +19,8 @@ QUANTITIES = {
     "settling_time_s": ("settling time (s)", ".1f"),
     "angle_error_sum_rad": ("angle error sum (rad)", ".1e"),
     "min_separation_m": ("min separation (m)", ".3f"),
+    "min_clearance_m": ("min clearance of a point (m)", ".3f"),
+    "min_hull_clearance_m": ("min clearance of a hull (m)", ".3f"),
 }
 
 IN_A_LINE = {
@@ -96,6 +98,8 @@ def _print_summary(console: Console, summary: Summary) -> None:
     table = new_table("quantity", "least", *(f"{level:.0%}" for level in QUANTILES[1:-1]), "most")
     for column, (title, form) in QUANTITIES.items():
         values = summary.quantiles[column]
+        if values is None and "clearance" in column:  # neither walls nor obstacles
+            continue
         table.add_row(title, *(["-"] * len(QUANTILES) if values is None else (format(v, form) for v in values)))
     console.print()
     print_table(console, table)

@@ -104,7 +104,7 @@ def test_limits_show_the_whole_floor_and_every_robot_and_ignore_what_is_not_fini
 
 
 def test_a_maneuver_is_shown_at_its_start_and_at_the_end_of_each_phase(maneuver: Ran) -> None:
-    rows = snapshot_rows(maneuver.trajectory, maneuver.metrics)
+    rows = snapshot_rows(maneuver.experiment, maneuver.trajectory, maneuver.metrics)
     assert maneuver.trajectory.t[rows].tolist() == [0.0, 50.0, 90.0, 120.0]
     figure = maneuver.draw("motion")
     assert {"0 s", "50 s", "90 s", "120 s"} <= set(texts(figure))
@@ -205,7 +205,7 @@ def test_a_run_cut_short_by_a_state_that_is_not_finite_is_drawn_up_to_it(shape: 
     poses[-1, 2], points[-1, 2] = np.nan, np.nan
     cut = replace(t, poses=poses, points=points)
     run = Ran(shape.experiment, cut, measure(shape.experiment, cut))
-    assert snapshot_rows(cut, run.metrics) == [0, 198]
+    assert snapshot_rows(run.experiment, cut, run.metrics) == [0, 198]
     for name in FIGURES:
         with print_style():
             assert render(run.draw(name), "png")
