@@ -26,10 +26,10 @@ TALLEST_FLOOR = 3.2
 ROOM_FOR_TIMES = 0.04
 """Room above the highest robot, where snapshots are labelled with their times, as a share of the width."""
 
-SNAPSHOTS = 4
+SNAPSHOTS = 3
 """States that are drawn of a motion that changes all the time, where there is room for them."""
 
-CLEAR = 2.0
+CLEAR = 1.5
 """Least distance of two robots in two of them, in circles about a chassis."""
 
 MOST_LOOKED_AT = 500
@@ -147,7 +147,8 @@ def _label(axes: Axes, experiment: Experiment, trajectory: Trajectory, rows: lis
     ends = points[rows][:, experiment.graph.formation_edges]
     along = np.linspace(0.0, 1.0, 12)[:, None, None, None]
     edges = ends[..., 0, :] * (1.0 - along) + ends[..., 1, :] * along
-    labels = Labels(axes, np.concatenate([trails.reshape(-1, 2), edges.reshape(-1, 2)]))
+    things = [_along(obstacle.outline) for obstacle in experiment.arena.obstacles]
+    labels = Labels(axes, np.concatenate([trails.reshape(-1, 2), edges.reshape(-1, 2), *things]))
     distance = 0.7 * body * points_per_metre(axes) + 3.5
     size = SMALL if experiment.n <= MANY else 4.5
     for row in (rows[-1], rows[0]) if experiment.n <= MANY else rows[-1:]:
@@ -160,4 +161,10 @@ def _label(axes: Axes, experiment: Experiment, trajectory: Trajectory, rows: lis
     if len(rows) > 2:
         for row in rows:
             highest = points[row, points[row, :, 1].argmax()]
-            labels.put(highest, f"{trajectory.t[row]:g} s", distance + 1.0, SMALL + 0.5)
+            labels.put(highest, f"{round(trajectory.t[row], 1):g} s", distance + 1.0, SMALL + 0.5)
+
+
+def _along(outline: Real) -> Real:
+    """(q, 2) points along a closed outline (m, 2), so near to each other that no label fits between them."""
+    share = np.linspace(0.0, 1.0, 24)[:, None, None]
+    return np.asarray(outline[:-1] + share * np.diff(outline, axis=0)).reshape(-1, 2)

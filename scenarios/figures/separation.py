@@ -19,7 +19,7 @@ from scenarios.simulation.trajectory import Trajectory
 Real = NDArray[np.float64]
 
 LEFT, RIGHT, HEIGHT, LEGEND = 0.38, 0.11, 1.14, 0.50
-BETWEEN = 0.34
+BETWEEN = 0.44
 """Inches from the upper panel to the lower one, with the upper one's legend between them."""
 
 LIMIT, BODY = (0, (4, 2)), ":"
@@ -84,7 +84,8 @@ def _draw_clearance(axes: Axes, experiment: Experiment, trajectory: Trajectory, 
         top = max(top, 1.6 * kept)
     bottom = min(0.0, 0.0 if hulls is None else 1.1 * float(np.nanmin(hulls.distance)))
     axes.set(xlim=(t[0], t[-1]), ylim=(bottom, top), xlabel=TIME, ylabel="clearance (m)")
-    _note(axes, t, points.distance, points.lowest, _where(experiment, points, t))
+    axes.plot(t[points.lowest], points.distance[points.lowest], "o", color=INK, markersize=2.5, zorder=5)
+    axes.set_title(_where(experiment, points, t), loc="right", fontsize=SMALL)
     if hulls is not None:
         axes.plot(t[hulls.lowest], hulls.distance[hulls.lowest], "o", color=FAINT, markersize=2.5, zorder=4)
 
