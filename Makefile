@@ -66,6 +66,11 @@ figures: $(STAMP) ## draw the figures of the documents, the film included
 	$(BIN)/formation run maneuver-testbed --out runs/figures/maneuver-testbed
 	$(BIN)/formation animate runs/figures/maneuver-testbed --speed 12 --fps 12
 	cp runs/figures/maneuver-testbed/animation.gif docs/images/maneuver-testbed.gif
+	for name in gap enclose; do \
+		$(BIN)/formation run $$name --out runs/figures/$$name && \
+		cp runs/figures/$$name/figure-motion.png docs/images/figure-$$name.png || exit 1; done
+	$(BIN)/formation plot runs/figures/gap --format png
+	cp runs/figures/gap/figure-separation.png docs/images/figure-gap-separation.png
 
 dist: ## build wheel and source archive, check them, run a scenario with each in an empty environment
 	rm -rf $(DIST) dist build

@@ -26,79 +26,93 @@ SAMPLES = 512
 """Instants of a cycle: its harmonics are exact to rounding where the path is smooth."""
 
 
-def settled(target: TargetFormation, reference: Reference, feedforward: bool) -> Complex:
-    """(S, n) y_k over one cycle, to which a first follower by displacement and all others settle, ideal integrators.
-
-    Args:
-        target: the target formation.
-        reference: that repeats.
-        feedforward: whether agents are told mu.
+def cycle(reference: Reference) -> Real:
+    """(S,) the instants of a cycle at which the settled motion is known, seconds.
 
     Raises:
         ValueError: the reference never repeats.
     """
-    t, turning = _cycle(reference)
-    return _solve(target, reference, feedforward, turning, np.zeros((len(t), target.graph.n), dtype=np.complex128))
+    if reference.cycle is None:
+        raise ValueError("expected a reference that repeats")
+    return np.linspace(0.0, reference.cycle, SAMPLES, endpoint=False)
 
 
-def settled_robots(
-    target: TargetFormation, reference: Reference, feedforward: bool, delta: complex, period: float
-) -> Complex:
-    """(S, n) the same of robots that hold each command for a period, in a body frame that turns meanwhile.
+class Settled:
+    """The settled motion of ideal integrators on a reference, or of robots that hold each command for a period.
 
     A robot on its way V_k(t) turns as the way does, so that a held command bends by half the turn of a period,
     V_k (1 + i T/2 Im(V_k' / V_k)), which makes up for most of what holding it loses. To first order in T.
-
-    Args:
-        target: the target formation.
-        reference: that repeats.
-        feedforward: whether agents are told mu.
-        delta: delta(0), complex metres.
-        period: T, seconds.
-
-    Raises:
-        ValueError: the reference never repeats.
     """
-    t, turning = _cycle(reference)
-    ideal = np.fft.fft(settled(target, reference, feedforward), axis=0)
-    way = reference.velocity(t)[:, None] / delta + np.fft.ifft(turning[:, None] * ideal, axis=0)
+
+    def __init__(
+        self,
+        target: TargetFormation,
+        reference: Reference,
+        feedforward: bool,
+        gains: Real | None = None,
+        held: tuple[complex, float] | None = None,
+    ) -> None:
+        """Prepare.
+
+        Args:
+            target: the target formation, its first follower steered by displacement.
+            reference: that repeats.
+            feedforward: whether agents are told mu.
+            gains: (n - 2,) of the followers, on top of eq. (u); None where all are 1.
+            held: delta(0), complex metres, and T, seconds; None for ideal integrators.
+
+        Raises:
+            ValueError: the reference never repeats.
+        """
+        t = cycle(reference)
+        self._turning = np.asarray(2j * np.pi * np.fft.fftfreq(SAMPLES, t[1]), dtype=np.complex128)
+        self._loop, self._share = Cascade.of(target, gains=gains), shares(target)
+        self._factor = reference.factor(t)
+        self._rate = reference.rate(t) if feedforward else np.zeros(SAMPLES, dtype=np.complex128)
+        self._shift, self._push = self._turning, np.zeros((SAMPLES, target.graph.n), dtype=np.complex128)
+        self._first: Complex | None = None
+        if held is not None:
+            delta, period = held
+            self._push = _bend(self._derivative(self()) + reference.velocity(t)[:, None] / delta, self._turning, period)
+            self._shift = np.asarray(np.expm1(self._turning * period) / period, dtype=np.complex128)
+            self._first = self._inverse() if self._rate.any() else None
+
+    def __call__(self, pushed: Complex | None = None) -> Complex:
+        """(S, n) y_k over one cycle; with velocities ``pushed`` (S, n), in units of delta(0), on top of the law's."""
+        push = self._push if pushed is None else self._push + pushed
+        push = push - push[:, :1]
+        y = np.zeros_like(push)
+        first, loop = agents.FIRST_FOLLOWER, self._loop
+        y[:, first] = self._first_follower(push[:, first])
+        for row, (i, j) in enumerate(loop.graph.neighbours.tolist()):
+            k, own, w = row + agents.FIRST_ORDINARY, loop.rates[row + 1], loop.weights[row]
+            drive = own * ((1.0 - w) * y[:, i] + w * y[:, j]) + push[:, k]
+            drive = drive + self._rate * self._share[row] * (y[:, j] - y[:, i])
+            y[:, k] = np.fft.ifft(np.fft.fft(drive) / (self._shift + own))
+        return y
+
+    def _derivative(self, y: Complex) -> Complex:
+        return np.fft.ifft(self._turning[:, None] * np.fft.fft(y, axis=0), axis=0)
+
+    def _first_follower(self, push: Complex) -> Complex:
+        """(S,) y_2 of lambda y_2 + y_2 - mu y_2 = D: mu differs from instant to instant, so all harmonics at once."""
+        if self._first is not None:
+            return self._first @ (self._factor + push)
+        if self._rate.any():  # of ideal integrators, D itself
+            return self._factor
+        return np.fft.ifft(np.fft.fft(self._factor + push) / (self._shift + 1.0))
+
+    def _inverse(self) -> Complex:
+        """(S, S) from what drives the first follower to y_2."""
+        derivative = np.fft.ifft(self._shift[:, None] * np.fft.fft(np.eye(SAMPLES), axis=0), axis=0)
+        return np.asarray(np.linalg.inv(derivative + np.diag(1.0 - self._rate)), dtype=np.complex128)
+
+
+def _bend(way: Complex, turning: Complex, period: float) -> Complex:
+    """(S, n) what a held command loses and the robot's turn makes up for, of ways (S, n)."""
     bend = np.fft.ifft(turning[:, None] * np.fft.fft(way, axis=0), axis=0)
     size = np.maximum(np.abs(way), np.finfo(np.float64).tiny)
-    push = np.asarray(0.5j * period * (bend * np.conj(way) / size).imag * (way / size), dtype=np.complex128)
-    held = np.asarray(np.expm1(turning * period) / period, dtype=np.complex128)
-    return _solve(target, reference, feedforward, held, push - push[:, :1])
-
-
-def _cycle(reference: Reference) -> tuple[Real, Complex]:
-    """(S,) instants of a cycle, seconds, and what a derivative multiplies each harmonic by."""
-    if reference.cycle is None:
-        raise ValueError("expected a reference that repeats")
-    t: Real = np.linspace(0.0, reference.cycle, SAMPLES, endpoint=False)
-    return t, np.asarray(2j * np.pi * np.fft.fftfreq(SAMPLES, reference.cycle / SAMPLES), dtype=np.complex128)
-
-
-def _solve(target: TargetFormation, reference: Reference, feedforward: bool, shift: Complex, push: Complex) -> Complex:
-    """(S, n) y_k, agent after agent, with lambda_m (S,) and a velocity ``push`` (S, n) on top of the law's."""
-    t, _ = _cycle(reference)
-    rate = reference.rate(t) if feedforward else np.zeros(SAMPLES, dtype=np.complex128)
-    loop, share = Cascade.of(target), shares(target)
-    y = np.zeros((SAMPLES, target.graph.n), dtype=np.complex128)
-    first = agents.FIRST_FOLLOWER
-    y[:, first] = _first(shift, rate, reference.factor(t) + push[:, first])
-    for row, (i, j) in enumerate(target.graph.neighbours.tolist()):
-        k, own, w = row + agents.FIRST_ORDINARY, loop.rates[row + 1], loop.weights[row]
-        drive = own * ((1.0 - w) * y[:, i] + w * y[:, j]) + rate * share[row] * (y[:, j] - y[:, i]) + push[:, k]
-        y[:, k] = np.fft.ifft(np.fft.fft(drive) / (shift + own))
-    return y
-
-
-def _first(shift: Complex, rate: Complex, factor: Complex) -> Complex:
-    """(S,) y_2 of lambda y_2 + y_2 - mu y_2 = D: mu differs from instant to instant, so all harmonics at once."""
-    if not rate.any():
-        return np.fft.ifft(np.fft.fft(factor) / (shift + 1.0))
-    unit = np.eye(len(factor))
-    derivative = np.fft.ifft(shift[:, None] * np.fft.fft(unit, axis=0), axis=0)
-    return np.asarray(np.linalg.solve(derivative + np.diag(1.0 - rate), factor), dtype=np.complex128)
+    return np.asarray(0.5j * period * (bend * np.conj(way) / size).imag * (way / size), dtype=np.complex128)
 
 
 def shape_residual(target: TargetFormation, points: Complex) -> Real:

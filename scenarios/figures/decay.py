@@ -62,7 +62,7 @@ def decay(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> F
 
 
 def _whole(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> Figure:
-    """One panel over the whole run, of phases too many for a panel each: distances from the moving place (Theorem 2)."""
+    """One panel over the whole run, of phases too many for one each: distances from the moving place (Theorem 2)."""
     handles = [handle for handle in _legend(experiment, None) if handle.get_label() != "exact solution"]
     bottom = 0.40 + 0.105 * -(-len(handles) // COLUMNS)
     figure = sheet(bottom + PANEL + GAP - 0.12)

@@ -14,7 +14,7 @@ from scenarios.figures.happenings import mark_places, mark_times, words_height, 
 from scenarios.figures.labels import Labels, points_per_metre
 from scenarios.figures.palette import INK
 from scenarios.figures.style import COLUMN, SMALL, panel, sheet
-from scenarios.figures.timelines import MANY, few_phases, draw_error_sum, draw_errors, mark_phases
+from scenarios.figures.timelines import MANY, draw_error_sum, draw_errors, few_phases, mark_phases
 from scenarios.measures.metrics import Metrics
 from scenarios.simulation.trajectory import Trajectory
 
@@ -54,7 +54,7 @@ def motion(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> 
     legend = words + (0.11 * -(-len(experiment.angles) // 4) + 0.05 if named else 0.14)
     each = 0.34 + legend
     sums = each + EACH_HEIGHT + GAP
-    named_phases = 1 < len(experiment.phases) and few_phases(experiment)
+    named_phases = len(experiment.phases) > 1 and few_phases(experiment)
     floor = sums + SUM_HEIGHT + (0.64 if named_phases else 0.52)
     figure = sheet(floor + height + 0.2)
     _floor(panel(figure, LEFT, floor, width, height), experiment, trajectory, metrics, shown)

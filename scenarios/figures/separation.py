@@ -74,7 +74,7 @@ def _draw_clearance(axes: Axes, experiment: Experiment, trajectory: Trajectory, 
         return
     t, points, hulls = trajectory.t, metrics.clearance.points, metrics.clearance.hulls
     axes.plot(t, points.distance, color=INK, linewidth=0.9, label="nearest projected point")
-    top = 1.15 * np.nanmax(points.distance)
+    top = 1.15 * float(np.nanmax(points.distance))
     if hulls is not None:
         axes.plot(t, hulls.distance, color=FAINT, linewidth=0.9, label="nearest hull", zorder=1.5)
         axes.fill_between(t, hulls.distance, 0.0, where=hulls.distance < 0.0, color=ALARM, alpha=0.3, linewidth=0.0)

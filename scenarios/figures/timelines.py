@@ -35,7 +35,7 @@ def few_phases(experiment: Experiment) -> bool:
 
 
 def mark_phases(axes: Axes, experiment: Experiment, names: bool = False) -> None:
-    """A line at each boundary between phases, and their names above the axes if ``names``; nothing where these are many."""
+    """A line at each boundary between few phases, and their names above the axes if ``names``."""
     if not few_phases(experiment):
         return
     ends = np.cumsum([phase.duration for phase in experiment.phases])

@@ -154,5 +154,5 @@ def _stayed(distances: Real, bound: float | None) -> bool:
     """Whether distances (T, n) from the predicted places, once all below a bound, stay so to the end."""
     if bound is None:
         return True
-    within = (distances < bound).all(axis=1)
+    within: NDArray[np.bool_] = np.all(distances < bound, axis=1)
     return bool(within.any() and within[int(within.argmax()) :].all())

@@ -10,7 +10,7 @@ from formation.analysis.lags import turning_gains
 from formation.laws.feedforward import FeedForward, places
 from formation.plane import as_complex, as_vectors
 from formation.references.curves import CURVES, ClosedCurve, curve_length
-from formation.references.lag import settled, shape_residual
+from formation.references.lag import Settled, shape_residual
 from formation.references.protocol import Reference, pair_displacement
 from formation.references.way_points import WayPoints
 
@@ -105,14 +105,14 @@ def test_in_the_shape_law_and_feed_forward_give_each_agent_the_velocity_of_its_p
 
 @pytest.mark.parametrize("omega", [0.1, 0.2, 0.5])
 def test_on_a_circle_the_settled_lag_is_the_gain_of_the_cascade(omega: float) -> None:
-    y = settled(TARGET, ClosedCurve("circle", (0.6, 0.6), 2.0 * np.pi / omega), False)
+    y = Settled(TARGET, ClosedCurve("circle", (0.6, 0.6), 2.0 * np.pi / omega), False)()
     t = np.arange(len(y)) * (2.0 * np.pi / omega / len(y))
     np.testing.assert_allclose(y, np.exp(1j * omega * t)[:, None] * turning_gains(TARGET, omega), atol=1e-12)
 
 
 def test_with_feed_forward_and_continuous_commands_nothing_lags() -> None:
     curve = ClosedCurve("figure-eight", (1.0, 0.5), 40.0)
-    y = settled(TARGET, curve, True)
+    y = Settled(TARGET, curve, True)()
     assert shape_residual(TARGET, y).max() < 1e-12
 
 

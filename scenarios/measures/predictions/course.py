@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from formation import agents
-from formation.references.lag import settled, settled_robots, shape_residual
+from formation.references.lag import Settled, shape_residual
 from scenarios.definition.experiment import Experiment
+from scenarios.measures.predictions import filtered
 from scenarios.measures.tracking import following
 from scenarios.simulation.schedule import periods
 
@@ -74,7 +75,7 @@ def course(experiment: Experiment, start: Real) -> Course | None:
         turning=float(np.abs(rate.imag).max()),
         scaling=float(np.abs(rate.real).max()),
         outrun=None if experiment.plant == "single_integrator" else _outrun(experiment, velocity, t, step),
-        lag=_lag(experiment),
+        lag=_lag(experiment, start),
     )
 
 
@@ -95,7 +96,7 @@ def _outrun(experiment: Experiment, velocity: NDArray[np.complex128], t: Real, s
     return None
 
 
-def _lag(experiment: Experiment) -> tuple[float, float] | None:
+def _lag(experiment: Experiment, start: Real) -> tuple[float, float] | None:
     reference, scenario = experiment.phases[0].reference, experiment.scenario
     if (
         reference is None
@@ -108,10 +109,10 @@ def _lag(experiment: Experiment) -> tuple[float, float] | None:
         return None
     told, delta = scenario.law.feedforward, experiment.phases[0].displacement
     if experiment.plant == "single_integrator" or delta is None:
-        y = settled(experiment.target, reference, told)
+        y = Settled(experiment.target, reference, told, experiment.own_gains)()
     else:
         period = periods(experiment.phases[0], scenario.plant.control_period_s)[1]
-        y = settled_robots(experiment.target, reference, told, delta, period)
+        y = filtered.settled(experiment, start, reference, delta, period)
     residual = shape_residual(experiment.target, y)
     return float(residual.max()), float(np.sqrt((residual**2).mean()))
 

@@ -129,7 +129,8 @@ def states(roots: Sequence[str], seconds: float) -> rrb.StateTimelineView:
 
 
 def notes(experiment: Experiment, root: str) -> rrb.Tabs:
-    """The summary page, the events, and what the safety filter changes."""
+    """The summary page, the events, how near walls and obstacles are, and what the safety filter changes."""
+    bounded = experiment.arena.walls or len(experiment.arena.obstacles) > 0
     return rrb.Tabs(
         rrb.TextDocumentView(origin=_path(root, summary.SUMMARY), name="Summary"),
         rrb.TextLogView(
@@ -137,7 +138,7 @@ def notes(experiment: Experiment, root: str) -> rrb.Tabs:
             name="Events",
             columns=rrb.TextLogColumns(timeline_columns=[TIMELINE], text_log_columns=["loglevel", "body"]),
         ),
-        *(figures([root], BESIDE, length(experiment), {}) if experiment.arena.walls or experiment.arena.obstacles else []),
+        *(figures([root], BESIDE, length(experiment), {}) if bounded else []),
         *(figures([root], FILTER, length(experiment), {}) if experiment.safety != "none" else []),
         active_tab="Summary",
     )

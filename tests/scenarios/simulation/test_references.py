@@ -58,6 +58,14 @@ def test_robots_that_hold_commands_lag_as_predicted(told: str, within: float) ->
     assert residual(experiment, 2.0 * np.pi / 0.2) == pytest.approx(known.lag[0], rel=within)
 
 
+def test_robots_that_a_filter_turns_lag_as_predicted() -> None:
+    experiment = open_experiment("circle", ("plant.name=saturated",), 60.0)
+    known = course(experiment, experiment.initial_points(0))
+    assert known is not None
+    assert known.lag is not None
+    assert residual(experiment, 5.0) == pytest.approx(known.lag[0], rel=0.01)
+
+
 def test_all_agents_end_where_the_reference_puts_them() -> None:
     experiment = opened("figure-eight")
     trajectory = simulate(experiment, 0)
