@@ -19,10 +19,12 @@ from robots.obstacles import Obstacle
 from robots.safety.protocol import WALLS
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.safety_result import row_name
+from scenarios.simulation.outages import standing
 from scenarios.simulation.trajectory import Trajectory
 
 Real = NDArray[np.float64]
 Index = NDArray[np.intp]
+There = NDArray[np.bool_]
 
 MOST_STATES = 100_000
 """Robots times instants that are looked at together."""
@@ -66,10 +68,18 @@ def clearance(experiment: Experiment, trajectory: Trajectory) -> Clearance | Non
     arena = experiment.arena
     if not (arena.walls or arena.obstacles):
         return None
-    points = nearest_points(arena, trajectory.points)
+    there = standing_at(experiment, trajectory.t)
+    points = nearest_points(arena, trajectory.points, there)
     if experiment.plant == "single_integrator":
         return Clearance(points, None)
-    return Clearance(points, nearest_hulls(arena, experiment.robot.chassis, trajectory.poses))
+    return Clearance(points, nearest_hulls(arena, experiment.robot.chassis, trajectory.poses, there))
+
+
+def standing_at(experiment: Experiment, t: Real) -> There | None:
+    """(T, O) which of the arena's obstacles are there at times t (T,), seconds; None where all always are."""
+    if all(event.obstacle is None for event in experiment.events):
+        return None
+    return np.array([standing(experiment, each) for each in t.tolist()], dtype=np.bool_)
 
 
 def thing_name(thing: int) -> str:
@@ -81,20 +91,20 @@ def thing_name(thing: int) -> str:
     return row_name(thing, 0)
 
 
-def nearest_points(arena: Arena, points: Real) -> Nearest:
-    """Of points (T, n, 2), metres."""
-    return _in_parts(points, lambda part: [_to_walls(arena, part), *(o.distance(part) for o in arena.obstacles)])
+def nearest_points(arena: Arena, points: Real, there: There | None = None) -> Nearest:
+    """Of points (T, n, 2), metres, from walls and from the obstacles that are ``there`` (T, O); all where None."""
+    return _in_parts(points, lambda part: [_to_walls(arena, part), *(o.distance(part) for o in arena.obstacles)], there)
 
 
-def nearest_hulls(arena: Arena, chassis: Chassis, poses: Real) -> Nearest:
-    """Of chassis at poses (T, n, 3), metres and radians."""
+def nearest_hulls(arena: Arena, chassis: Chassis, poses: Real, there: There | None = None) -> Nearest:
+    """Of chassis at poses (T, n, 3), metres and radians; ``there`` as for points."""
 
     def gaps(part: Real) -> list[Real]:
         corners = _corners(chassis, part)
         walls = _to_walls(arena, corners).min(axis=-2)
         return [walls, *(hull_distance(obstacle, corners) for obstacle in arena.obstacles)]
 
-    return _in_parts(poses, gaps)
+    return _in_parts(poses, gaps, there)
 
 
 def hull_distance(obstacle: Obstacle, corners: Real) -> Real:
@@ -136,11 +146,17 @@ def _to_walls(arena: Arena, points: Real) -> Real:
     return points @ planes[:, :2].T - planes[:, 2] if arena.walls else np.full((*points.shape[:-1], WALLS), np.inf)
 
 
-def _in_parts(states: Real, gaps: Callable[[Real], list[Real]]) -> Nearest:
+def _in_parts(states: Real, gaps: Callable[[Real], list[Real]], there: There | None) -> Nearest:
     """The nearest of states (T, n, ...), a stretch of time after the other, so that memory is bounded."""
     steps, n = states.shape[:2]
     size = max(1, MOST_STATES // max(1, n))
-    found = [_nearest(gaps(states[begin : begin + size])) for begin in range(0, steps, size)]
+    found = []
+    for begin in range(0, steps, size):
+        distances = gaps(states[begin : begin + size])
+        if there is not None:
+            for gap, present in zip(distances[1:], there[begin : begin + size].T, strict=True):
+                gap[~present] = np.inf
+        found.append(_nearest(distances))
     return Nearest(*(np.concatenate(column) for column in zip(*found, strict=True)))
 
 

@@ -18,7 +18,7 @@ from formation.plane import as_complex
 from robots.safety.protocol import WALLS
 from robots.testbed import OBSTACLE_DISTANCE
 from scenarios.definition.experiment import Experiment
-from scenarios.measures.clearance import thing_name
+from scenarios.measures.clearance import standing_at, thing_name
 from scenarios.measures.predictions.theory import moves_exactly
 from scenarios.measures.tracking import following
 
@@ -82,8 +82,12 @@ def _meetings(experiment: Experiment, t: Real, places: Real) -> Iterator[str]:
             yield from _meeting(experiment, t, sides[..., side], f"the {thing_name(side)}", *of_walls)
     else:
         yield from _leaving(experiment, t, sides.min(axis=-1))
-    for number, obstacle in enumerate(arena.obstacles, start=WALLS):
-        yield from _meeting(experiment, t, obstacle.distance(places), thing_name(number), *of_obstacles)
+    there = standing_at(experiment, t)
+    for number, obstacle in enumerate(arena.obstacles):
+        gaps = obstacle.distance(places)
+        if there is not None:
+            gaps[~there[:, number]] = np.inf
+        yield from _meeting(experiment, t, gaps, thing_name(WALLS + number), *of_obstacles)
 
 
 def _meeting(experiment: Experiment, t: Real, gaps: Real, thing: str, least: float, rule: str) -> Iterator[str]:

@@ -130,7 +130,7 @@ def states(roots: Sequence[str], seconds: float) -> rrb.StateTimelineView:
 
 def notes(experiment: Experiment, root: str) -> rrb.Tabs:
     """The summary page, the events, how near walls and obstacles are, and what the safety filter changes."""
-    bounded = experiment.arena.walls or len(experiment.arena.obstacles) > 0
+    bounded = experiment.arena.walls or bool(experiment.arena.obstacles)
     return rrb.Tabs(
         rrb.TextDocumentView(origin=_path(root, summary.SUMMARY), name="Summary"),
         rrb.TextLogView(

@@ -101,6 +101,16 @@ def test_a_floor_with_neither_walls_nor_obstacles_has_no_clearance_and_points_ha
     assert found.hulls is None
 
 
+def test_an_obstacle_that_is_there_for_a_while_counts_as_long_as_it_is_there() -> None:
+    floor, there = (
+        Arena((-1.0, 1.0), (-1.0, 1.0), False, (disc((0.3, 0.7), 0.1),)),
+        np.array([[False], [True], [False]]),
+    )
+    found = nearest_points(floor, np.full((3, 1, 2), 0.3), there)
+    np.testing.assert_allclose(found.distance, [np.inf, 0.3, np.inf])
+    assert found.thing[1] == 4
+
+
 def test_a_state_that_is_no_number_is_nowhere_near() -> None:
     points = np.zeros((3, 1, 2))
     points[0], points[1], points[2] = 0.5, 0.9, np.nan
