@@ -1,6 +1,7 @@
 """From a trajectory to what it achieved: metrics, tracking, misfits, ``result.json``. Draws and writes nothing."""
 
 __all__ = [
+    "clearance",
     "closed_forms",
     "contacts",
     "happenings",

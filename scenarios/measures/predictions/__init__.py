@@ -3,4 +3,4 @@
 Measures no trajectory.
 """
 
-__all__ = ["course", "forecast", "misfits", "remarks", "stops", "theory"]
+__all__ = ["course", "filtered", "forecast", "misfits", "remarks", "stops", "theory", "way"]
