@@ -13,6 +13,7 @@ from robots.instruments import Imperfections as Imperfections
 from robots.instruments import Instruments as Instruments
 from robots.model import GTERNAL as GTERNAL
 from robots.model import Chassis as Chassis
+from robots.model import Fleet as Fleet
 from robots.model import RobotModel as RobotModel
 from robots.nid import NearIdentityDiffeomorphism as NearIdentityDiffeomorphism
 from robots.sensors import RelativePositionSensor as RelativePositionSensor
@@ -25,6 +26,7 @@ from robots.worlds import make_world as make_world
 __all__ = [
     "Arena",
     "Chassis",
+    "Fleet",
     "DifferentialDrive",
     "GTERNAL",
     "Imperfections",

@@ -26,7 +26,7 @@ class DifferentialDrive:
     Attributes:
         wheel_radius: r, metres.
         base_length: b, distance between the wheels, metres.
-        wheel_speed_limit: largest speed of either wheel in either direction, rad/s.
+        wheel_speed_limit: largest speed of either wheel in either direction, rad/s; (n,) of robots that differ.
 
     Raises:
         ValueError: a quantity is not finite and positive.
@@ -34,12 +34,12 @@ class DifferentialDrive:
 
     wheel_radius: float
     base_length: float
-    wheel_speed_limit: float
+    wheel_speed_limit: float | Real
 
     def __post_init__(self) -> None:
         for field, unit in (("wheel_radius", "m"), ("base_length", "m"), ("wheel_speed_limit", "rad/s")):
             value = getattr(self, field)
-            if not (np.isfinite(value) and value > 0.0):
+            if not (np.isfinite(value) & (np.asarray(value) > 0.0)).all():
                 raise ValueError(f"{field} must be a positive number of {unit}, got {value}")
 
     @cached_property
@@ -63,12 +63,12 @@ class DifferentialDrive:
         return twist @ self.to_wheels.T
 
     @property
-    def speed_limit(self) -> float:
-        """Largest forward speed, m/s: both wheels at their limit."""
+    def speed_limit(self) -> float | Real:
+        """Largest forward speed, m/s: both wheels at their limit; (n,) of robots that differ."""
         return self.wheel_radius * self.wheel_speed_limit
 
     @property
-    def turn_limit(self) -> float:
+    def turn_limit(self) -> float | Real:
         """Largest turning speed, rad/s: the wheels at opposite limits."""
         return 2.0 * self.speed_limit / self.base_length
 
@@ -80,7 +80,8 @@ class DifferentialDrive:
         """
         limit = self.wheel_speed_limit
         if how == "clip":
-            return np.clip(wheel_speeds, -limit, limit)
+            each = np.asarray(limit)[..., None]
+            return np.clip(wheel_speeds, -each, each)
         speed = np.abs(wheel_speeds)
         fastest = np.maximum(speed[..., 0], speed[..., 1])
         return wheel_speeds * (limit / np.maximum(fastest, limit))[..., None]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robots.drive import DifferentialDrive
+from robots.nid import NearIdentityDiffeomorphism
 
 STANDARD_GRAVITY = 9.80665
 """m/s^2 (CGPM 1901)."""
@@ -73,6 +74,31 @@ class RobotModel:
 
     drive: DifferentialDrive
     chassis: Chassis
+
+
+@dataclass(frozen=True, eq=False)
+class Fleet:
+    """The robots of a run, which may differ.
+
+    Attributes:
+        drive: of all; its wheels' limit is (n,) where robots differ.
+        nid: where the projected points are; (n,) likewise.
+        bodies: the n chassis.
+    """
+
+    drive: DifferentialDrive
+    nid: NearIdentityDiffeomorphism
+    bodies: tuple[Chassis, ...]
+
+    @property
+    def outlines(self) -> np.ndarray:
+        """(n, 4, 2) corners of the chassis, metres, each in the frame of its axle's centre."""
+        return np.stack([body.outline for body in self.bodies])
+
+    @property
+    def widest(self) -> float:
+        """The largest width of a chassis, metres."""
+        return max(body.width for body in self.bodies)
 
 
 CONTROL_PERIOD = 0.033

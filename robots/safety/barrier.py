@@ -48,6 +48,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robots.drive import DifferentialDrive
 from robots.nid import NearIdentityDiffeomorphism
@@ -132,7 +133,7 @@ def delayed_settings(settings: FilterSettings, delay: float, speed: float) -> Fi
     return replace(settings, safe_distance=distance, sensing_range=reach, gain=gain)
 
 
-def turn_weight(drive: DifferentialDrive, nid: NearIdentityDiffeomorphism) -> float:
+def turn_weight(drive: DifferentialDrive, nid: NearIdentityDiffeomorphism) -> float | NDArray[np.float64]:
     """b / 2 l, the weight of u_y in the wheels' limit |u_x| + (b / 2 l) |u_y| <= r w_max."""
     return drive.base_length / (2.0 * nid.projection_distance)
 

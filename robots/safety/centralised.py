@@ -37,7 +37,7 @@ class CentralisedFilter(JointFilter):
         self._walls = np.empty((0, 3)) if arena is None else arena.wall_planes
         self._obstacles = () if arena is None else arena.obstacles
         self._codes = things(self._n, len(self._walls), len(self._obstacles))
-        self._limit, self._weight = drive.speed_limit * (1.0 - WHEEL_MARGIN), turn_weight(drive, nid)
+        self._limit, self._weight = float(drive.speed_limit) * (1.0 - WHEEL_MARGIN), turn_weight(drive, nid)
 
     def avoid(self, obstacles: Sequence[Obstacle]) -> None:
         """See :class:`robots.safety.SafetyFilter`."""

@@ -67,8 +67,8 @@ class DecentralisedFilter:
             stuck_recovery=STUCK_RECOVERY,
             stuck_turn_rate=STUCK_TURN_RATE,
             stuck_turn_limit=STUCK_TURN_LIMIT,
-            speed_limit=drive.speed_limit * (1.0 - WHEEL_MARGIN),
-            turn_weight=turn_weight(drive, nid),
+            speed_limits=np.array(np.broadcast_to(drive.speed_limit, shape[-1:])) * (1.0 - WHEEL_MARGIN),
+            turn_weights=np.array(np.broadcast_to(turn_weight(drive, nid), shape[-1:])),
         )
         self._walls = np.empty((0, 3)) if arena is None else arena.wall_planes
         self._obstacles = pack(() if arena is None else arena.obstacles)

@@ -49,8 +49,8 @@ class Constants(NamedTuple):
     stuck_recovery: float
     stuck_turn_rate: float
     stuck_turn_limit: float
-    speed_limit: float
-    turn_weight: float
+    speed_limits: Real
+    turn_weights: Real
 
 
 @compiled
@@ -344,7 +344,6 @@ def step(
     rows = np.empty((WHEEL_ROWS + n + len(walls) + obstacles, 3))
     work, source = np.empty_like(rows), np.empty(len(rows), np.int64)
     reach, safe, gain = constants.sensing_range, constants.safe_distance, constants.gain
-    speed, weight = constants.speed_limit, constants.turn_weight
     window = reach - safe
     noisy = turns.shape[2] > 0
     for run in range(batch):
@@ -363,6 +362,7 @@ def step(
                 continue
             gx, gy = _bounded(gx, gy)
             vx, vy = _bounded(vx, vy)
+            speed, weight = constants.speed_limits[i], constants.turn_weights[i]
             wheel_rows(rows, speed, weight)
             count = np.int64(WHEEL_ROWS)  # a literal would be a type of its own, and compile all of it twice
             law = np.hypot(gx, gy)

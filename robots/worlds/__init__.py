@@ -13,7 +13,7 @@ import numpy as np
 from robots.arena import Arena
 from robots.drive import Saturation
 from robots.measured.model import MeasuredModel
-from robots.model import RobotModel
+from robots.model import Chassis, RobotModel
 from robots.nid import NearIdentityDiffeomorphism
 from robots.worlds.kinematic import Saturated as Saturated
 from robots.worlds.kinematic import SingleIntegrator as SingleIntegrator
@@ -44,12 +44,13 @@ def make_world(
     arena: Arena | None = None,
     measured: MeasuredModel | None = None,
     generators: Sequence[np.random.Generator] = (),
+    bodies: Sequence[Chassis] | None = None,
 ) -> World:
     """The world named ``plant`` with projected points (..., n, 2), metres, and headings theta (..., n), radians.
 
     ``single_integrator`` has no bodies: its poses are the points themselves. With ``measured`` the robots of
     ``saturated`` and ``pymunk`` stand behind their firmware and under cameras, with random streams spawned from the
-    runs' ``generators``.
+    runs' ``generators``. ``bodies`` are the n chassis where they are not all that of ``robot``.
 
     Raises:
         ValueError: ``plant`` is not one of :data:`PLANTS`, or is not one of :data:`MEASURED_PLANTS` and ``measured``.
@@ -66,7 +67,7 @@ def make_world(
     if plant == "pymunk":
         from robots.worlds.contact import Contact  # pymunk is loaded only where bodies collide
 
-        return Contact(poses, nid, robot, saturation, arena)
+        return Contact(poses, nid, robot, saturation, arena, bodies=bodies)
     raise ValueError(f"plant must be one of {', '.join(PLANTS)}, got {plant!r}")
 
 

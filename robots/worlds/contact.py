@@ -21,8 +21,8 @@ from pymunk import batch
 
 from robots.arena import Arena
 from robots.drive import Saturation
-from robots.model import RobotModel
-from robots.nid import NearIdentityDiffeomorphism
+from robots.model import Chassis, RobotModel
+from robots.nid import NearIdentityDiffeomorphism, mapped
 from robots.worlds.kinematic import arc_chord
 from robots.worlds.protocol import NOTHING, Controller, Index, Real
 
@@ -55,6 +55,7 @@ class Contact:
         saturation: Saturation = "scale",
         arena: Arena | None = None,
         substeps: int = SUBSTEPS,
+        bodies: Sequence[Chassis] | None = None,
     ) -> None:
         self.poses = np.array(poses, dtype=np.float64)
         if self.poses.ndim != 2:
@@ -62,13 +63,15 @@ class Contact:
         self._n = n = len(self.poses)
         self._substeps = substeps
         self._drive, self._saturation = robot.drive, saturation
-        self._l, self._ahead = nid.projection_distance, robot.chassis.centre_offset
-        self._to_wheels = (robot.drive.to_wheels @ nid.to_twist).T
+        chassis = [robot.chassis] * n if bodies is None else list(bodies)
+        self._l = nid.ahead
+        self._ahead = np.array([[each.centre_offset] for each in chassis])
+        self._to_wheels = (robot.drive.to_wheels @ nid.to_twist).swapaxes(-1, -2)
         self._to_twist = robot.drive.to_twist.T
-        self.space = _space(self.poses, robot, arena)
+        self.space = _space(self.poses, robot, chassis, arena)
         self._obstacles = () if arena is None else _obstacles(self.space, arena, robot.chassis.body_friction)
         self.space.add(*self._obstacles)
-        self._sliding = 2.0 * robot.chassis.traction_limit / robot.chassis.mass
+        self._sliding = np.array([[2.0 * each.traction_limit / each.mass] for each in chassis])
         self.wheel_speeds = np.zeros((n, 2))
         self._row_of = {body.id: row for row, body in enumerate(list(self.space.bodies)[:n])}
         self._state, self._arbiters = batch.Buffer(), batch.Buffer()
@@ -85,7 +88,7 @@ class Contact:
         return self.points, self.headings
 
     def step(self, controller: Controller, period: float) -> None:
-        wheels = controller(self.points, self.headings, 0.0) @ self._to_wheels
+        wheels = mapped(controller(self.points, self.headings, 0.0), self._to_wheels)
         self.wheel_speeds = self._drive.saturate(wheels, self._saturation)
         self.move(self.wheel_speeds @ self._to_twist, period)
 
@@ -146,12 +149,12 @@ class Contact:
         return np.where(touched > n, NOTHING, touched)
 
 
-def _space(poses: Real, robot: RobotModel, arena: Arena | None) -> pymunk.Space:
+def _space(poses: Real, robot: RobotModel, bodies_of: Sequence[Chassis], arena: Arena | None) -> pymunk.Space:
     space = pymunk.Space()
     space.collision_slop = 1e-4  # the default of 0.1 m would let robots sink into each other by their own size
-    chassis, ahead = robot.chassis, robot.chassis.centre_offset
     bodies = []
-    for x, y, theta in poses.tolist():
+    for (x, y, theta), chassis in zip(poses.tolist(), bodies_of, strict=True):
+        ahead = chassis.centre_offset
         body = pymunk.Body(chassis.mass, chassis.inertia)
         body.position = x + ahead * np.cos(theta), y + ahead * np.sin(theta)
         body.angle = theta
@@ -159,8 +162,8 @@ def _space(poses: Real, robot: RobotModel, arena: Arena | None) -> pymunk.Space:
         box.friction = chassis.body_friction
         space.add(body, box)
         bodies.append(body)
-    traction = chassis.traction_limit
-    for body in bodies:
+    for body, chassis in zip(bodies, bodies_of, strict=True):
+        traction, ahead = chassis.traction_limit, chassis.centre_offset
         partner = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
         partner.position = body.local_to_world((-ahead, 0.0))
         pivot = pymunk.PivotJoint(partner, body, (0.0, 0.0), (-ahead, 0.0))
@@ -171,7 +174,7 @@ def _space(poses: Real, robot: RobotModel, arena: Arena | None) -> pymunk.Space:
             joint.max_bias = 0.0
         space.add(partner, pivot, gear)
     if arena is not None and arena.walls:
-        space.add(*_walls(space, arena, chassis.body_friction))
+        space.add(*_walls(space, arena, robot.chassis.body_friction))
     return space
 
 

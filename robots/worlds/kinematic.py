@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.drive import DifferentialDrive, Saturation
-from robots.nid import NearIdentityDiffeomorphism
+from robots.nid import NearIdentityDiffeomorphism, mapped
 from robots.worlds.protocol import NOTHING, Controller, Real
 
 Complex = NDArray[np.complex128]
@@ -63,8 +63,8 @@ class Unicycle:
 
     def __init__(self, poses: Real, nid: NearIdentityDiffeomorphism, drive: DifferentialDrive) -> None:
         self.poses = np.array(poses, dtype=np.float64)
-        self._l = nid.projection_distance
-        self._to_wheels = (drive.to_wheels @ nid.to_twist).T
+        self._l = nid.ahead
+        self._to_wheels = (drive.to_wheels @ nid.to_twist).swapaxes(-1, -2)
         self._to_twist = drive.to_twist.T
         self._drive = drive
         self.wheel_speeds = np.zeros_like(self.poses[..., :2])
@@ -76,7 +76,7 @@ class Unicycle:
         return self.points, self.headings
 
     def step(self, controller: Controller, period: float) -> None:
-        self.wheel_speeds = self._limited(controller(self.points, self.headings, 0.0) @ self._to_wheels)
+        self.wheel_speeds = self._limited(mapped(controller(self.points, self.headings, 0.0), self._to_wheels))
         self.move(self.wheel_speeds @ self._to_twist, period)
 
     def move(self, twist: Real, period: float) -> None:

@@ -55,7 +55,13 @@ def digest(content: Mapping[str, Any], own_law: LawFile | None) -> str:
 
 
 def without_later_keys(data: dict[str, Any]) -> None:
-    """Take the keys of :data:`LATER_KEYS` that have their defaults out of a scenario's dumped ``data``."""
+    """Take the keys of :data:`LATER_KEYS` that have their defaults out of a scenario's dumped ``data``.
+
+    An agent without a robot of its own likewise has no such key.
+    """
+    for agent in data.get("agents", ()):
+        if agent.get("robot", ()) is None:
+            del agent["robot"]
     for *tables, key in LATER_KEYS:
         place: Any = data
         model: type[BaseModel] = Scenario

@@ -29,7 +29,7 @@ from formation.laws.another_pair import AnotherPairLaw
 from formation.laws.base import ORIENTATION, SCALE
 from formation.laws.protocol import LEADER_FIRST_FOLLOWER
 from formation.measurements import ANGLE, RATIO
-from robots import GTERNAL, Arena, Imperfections, Instruments, NearIdentityDiffeomorphism, RobotModel
+from robots import GTERNAL, Arena, Fleet, Imperfections, Instruments, NearIdentityDiffeomorphism, RobotModel
 from robots.measured import MeasuredModel
 from robots.obstacles import Obstacle
 from robots.safety import FilterSettings
@@ -73,6 +73,7 @@ class Experiment:
         own_gains: (n - 2,) gain of each follower of the angle law on top of eq. (u); None where all are 1.
         estimator: how agents learn v_r; None where it is broadcast.
         measured: the robots as logs and firmware show them; None for the data sheet's.
+        fleet: the robots, each as it is; ``nid`` and ``robot`` are those of which none differs.
         asked_duration: seconds that replaced the scenario's own; None where none did.
         events: what happens on the way, by time.
         shapes: of each phase, the experiment with that phase's aim and law; empty where the shape never changes.
@@ -92,6 +93,7 @@ class Experiment:
     arena: Arena
     filter_settings: FilterSettings
     measured: MeasuredModel | None
+    fleet: Fleet
     asked_duration: float | None = None
     events: tuple[Event, ...] = ()
     shapes: tuple[Experiment, ...] = ()
@@ -278,6 +280,7 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
         arena=replace(arena, obstacles=(*arena.obstacles, *(each.obstacle for each in events if each.obstacle))),
         filter_settings=_filter_settings(path, scenario),
         measured=robot_file.measured(scenario, path),
+        fleet=_fleet(path, scenario, nid, robot, aim.formation.graph.n),
         asked_duration=duration,
         events=events,
     )
@@ -438,6 +441,31 @@ def _robot(scenario: Scenario) -> RobotModel:
         drive=replace(GTERNAL.drive, wheel_speed_limit=table.wheel_speed_limit_rad_s),
         chassis=replace(GTERNAL.chassis, tyre_friction=table.tyre_friction, body_friction=table.body_friction),
     )
+
+
+def _fleet(path: str, scenario: Scenario, nid: NearIdentityDiffeomorphism, robot: RobotModel, n: int) -> Fleet:
+    """Every robot as its agent's table has it.
+
+    Raises:
+        InputError: robots of their own where all are measured, or share one filter.
+    """
+    own = {int(agents.rows(agent.id)): agent.robot for agent in scenario.agents if agent.robot is not None}
+    if not own:
+        return Fleet(robot.drive, nid, (robot.chassis,) * n)
+    field = f"{path}: agents[id {agents.number(min(own))}].robot"
+    if scenario.robot.model == "measured":
+        raise InputError(f'{field}: measured robots have numbers of their own, expected robot.model = "nominal"')
+    if scenario.safety.filter == "centralised":
+        raise InputError(f"{field}: the centralised filter takes all robots for equal, expected another safety.filter")
+    ahead, limits = np.full(n, nid.projection_distance), np.full(n, robot.drive.wheel_speed_limit)
+    bodies = [robot.chassis] * n
+    for row, table in own.items():
+        ahead[row] = table.projection_distance_m or ahead[row]
+        limits[row] = table.wheel_speed_limit_rad_s or limits[row]
+        length, width = table.length_m or robot.chassis.length, table.width_m or robot.chassis.width
+        bodies[row] = replace(robot.chassis, length=length, width=width)
+    drive = replace(robot.drive, wheel_speed_limit=limits)
+    return Fleet(drive, NearIdentityDiffeomorphism(ahead), tuple(bodies))
 
 
 def _phases(path: str, scenario: Scenario, formation: Framework, duration: float | None) -> tuple[Phase, ...]:

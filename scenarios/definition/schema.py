@@ -41,6 +41,19 @@ class Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
+class OwnRobotTable(Table):
+    """A robot that differs from `robot`; what is absent is as there, and the chassis as the GTernal's."""
+
+    projection_distance_m: Positive | None = None
+    """l of this robot."""
+    wheel_speed_limit_rad_s: Positive | None = None
+    """Of its wheels."""
+    length_m: Positive | None = None
+    """Of its chassis, along the heading."""
+    width_m: Positive | None = None
+    """Of its chassis, across the heading."""
+
+
 class AgentTable(Table):
     """One agent."""
 
@@ -53,6 +66,7 @@ class AgentTable(Table):
     """Initial position of its projected point, m."""
     heading_deg: Number | None = None
     """Initial heading; drawn from the run's seed where absent."""
+    robot: OwnRobotTable | None = None
     gain: Positive | None = None
     """Of a follower of the angle law, on top of eq. (u): it decays at gain times sin^2 of its angle, 1/s; as `law.gain`
     says where absent."""

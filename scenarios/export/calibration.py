@@ -74,5 +74,7 @@ def calibration() -> str:
     """The script."""
     drive = GTERNAL.drive
     return SCRIPT.format(
-        step=CONTROL_PERIOD, speed=round(0.75 * drive.speed_limit, 3), spin=round(0.75 * drive.turn_limit, 3)
+        step=CONTROL_PERIOD,
+        speed=round(0.75 * float(drive.speed_limit), 3),
+        spin=round(0.75 * float(drive.turn_limit), 3),
     )

@@ -31,6 +31,11 @@ def start_poses(experiment: Experiment, seed: int) -> Real:
             raise InputError(f"{path}: {field}: a script for the testbed needs {expected!r}, got {value!r}")
     if scenario.reference is not None:
         raise InputError(f"{path}: reference: a script for the testbed needs phases")
+    for agent in scenario.agents:
+        if agent.robot is not None:
+            raise InputError(f"{path}: agents[id {agent.id}].robot: the testbed's robots are all equal, expected none")
+    if scenario.events:
+        raise InputError(f"{path}: events: a script for the testbed cannot bring them about, expected none")
     if scenario.obstacles:
         raise InputError(f"{path}: obstacles: the testbed has none, got {len(scenario.obstacles)}")
     for axis, side, floor in (

@@ -10,7 +10,7 @@ from matplotlib.patches import Polygon, Rectangle
 from numpy.typing import NDArray
 
 from formation import Graph
-from robots import Arena, Chassis
+from robots import Arena, Chassis, Fleet
 from scenarios.definition.experiment import Experiment
 from scenarios.figures.palette import FAINT, INK, agent_colour
 from scenarios.simulation.trajectory import Trajectory
@@ -76,13 +76,13 @@ def draw_robots(axes: Axes, experiment: Experiment, poses: Real, points: Real, h
     if experiment.plant == "single_integrator":
         axes.scatter(points[:, 0], points[:, 1], s=12.0, facecolors=face, edgecolors=colours, linewidths=0.7, zorder=4)
         return
-    chassis = experiment.robot.chassis
+    fleet = experiment.fleet
     axes.add_collection(
         PolyCollection(
-            list(placed(chassis.outline, poses)), facecolors=face, edgecolors=colours, linewidths=0.5, zorder=4
+            list(placed(fleet.outlines, poses)), facecolors=face, edgecolors=colours, linewidths=0.5, zorder=4
         )
     )
-    noses = list(placed(wedge(chassis), poses))
+    noses = list(placed(wedges(fleet), poses))
     axes.add_collection(PolyCollection(noses, facecolors=colours if hollow else "white", linewidths=0.0, zorder=5))
 
 
@@ -92,9 +92,14 @@ def wedge(chassis: Chassis) -> Real:
     return np.array([[back, -side], [front, 0.0], [back, side]]) + [chassis.centre_offset, 0.0]
 
 
+def wedges(fleet: Fleet) -> Real:
+    """(n, 3, 2) the wedge of each robot."""
+    return np.stack([wedge(body) for body in fleet.bodies])
+
+
 def placed(outline: Real, poses: Real) -> Real:
-    """(n, q, 2) an outline (q, 2) in the robot's frame, moved to each of the poses (n, 3), metres."""
+    """(n, q, 2) outlines (q, 2) or (n, q, 2) in the robots' frames, moved to the poses (n, 3), metres."""
     cos, sin = np.cos(poses[:, 2, None]), np.sin(poses[:, 2, None])
-    x, y = outline.T
+    x, y = outline[..., 0], outline[..., 1]
     turned = np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
     return turned + poses[:, None, :2]

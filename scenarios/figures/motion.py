@@ -141,7 +141,7 @@ def _nearest(places: Complex, state: Complex) -> Real:
 
 
 def _label(axes: Axes, experiment: Experiment, trajectory: Trajectory, rows: list[int]) -> None:
-    body = experiment.robot.chassis.width
+    body = experiment.fleet.widest
     points = trajectory.points
     trails = points[:: max(1, len(points) // 200)]
     ends = points[rows][:, experiment.graph.formation_edges]

@@ -61,7 +61,7 @@ def _draw_pairs(axes: Axes, experiment: Experiment, trajectory: Trajectory, metr
         COLLISION_DISTANCE, color=ALARM, linewidth=0.7, linestyle=LIMIT,
         label=f"testbed's limit, {COLLISION_DISTANCE:g} m",
     )  # fmt: skip
-    width = experiment.robot.chassis.width
+    width = experiment.fleet.widest
     axes.axhline(width, color=INK, linewidth=0.6, linestyle=BODY, label=f"chassis width, {width:g} m")
     axes.set(xlim=(t[0], t[-1]), ylim=(0.0, 1.1 * np.nanmax(distance)), xlabel=TIME, ylabel="separation (m)")
     lowest = int(np.nanargmin(distance))

@@ -114,7 +114,7 @@ def closed_forms(experiment: Experiment, start: Real) -> ClosedForms | None:
     late = table.delay_periods * period
     few = experiment.n <= MANY
     filtered = late > 0.0 and experiment.safety == "decentralised"
-    speed = experiment.robot.drive.speed_limit
+    speed = float(np.min(experiment.fleet.drive.speed_limit))
     return ClosedForms(
         loop=loop,
         noise=noise_rms(loop, period, power),
@@ -126,7 +126,7 @@ def closed_forms(experiment: Experiment, start: Real) -> ClosedForms | None:
         longest_period=longest_period(modes),
         most_periods=most_periods(modes, period),
         start_speed=float(np.abs(_first_velocity(loop, start, experiment)).max()),
-        turning_limit=experiment.nid.turning_limit(period, 0 if undone else table.delay_periods),
+        turning_limit=experiment.fleet.nid.turning_limit(period, 0 if undone else table.delay_periods),
         period=period,
         dwell=_dwell(experiment, loop),
         filter=delayed_settings(experiment.filter_settings, late, speed) if filtered else None,

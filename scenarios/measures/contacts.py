@@ -39,17 +39,17 @@ def touching(experiment: Experiment, trajectory: Trajectory, row: int) -> list[l
     n, pairs = experiment.n, set()
     for agent, other in enumerate(trajectory.contact[row].tolist()):
         if other == n:
-            pairs.add((agent, n + _nearest_thing(experiment, trajectory.poses[row, agent])))
+            pairs.add((agent, n + _nearest_thing(experiment, agent, trajectory.poses[row, agent])))
         elif other != NOTHING:
             pairs.add((min(agent, other), max(agent, other)))
     return [[row_name(one, n), row_name(other, n)] for one, other in sorted(pairs)]
 
 
-def _nearest_thing(experiment: Experiment, pose: np.ndarray) -> int:
-    """The wall or the obstacle, counted in this order, that is nearest to the chassis of a robot at a pose (3,)."""
+def _nearest_thing(experiment: Experiment, agent: int, pose: np.ndarray) -> int:
+    """The wall or the obstacle, counted in this order, that is nearest to an agent's chassis at a pose (3,)."""
     arena, (x, y, theta) = experiment.arena, pose
     turn = np.array([[np.cos(theta), np.sin(theta)], [-np.sin(theta), np.cos(theta)]])
-    corners = experiment.robot.chassis.outline @ turn + [x, y]
+    corners = experiment.fleet.bodies[agent].outline @ turn + [x, y]
     border = np.concatenate(
         [corners + share * (np.roll(corners, -1, axis=0) - corners) for share in (0.0, 0.25, 0.5, 0.75)]
     )

@@ -87,7 +87,7 @@ def measure(experiment: Experiment, trajectory: Trajectory) -> Metrics:
     window = trailing(trajectory.t, errors) if experiment.noisy else None
     judged = error_sum if window is None else np.abs(window.mean).sum(axis=-1)
     verdict = judge(
-        trajectory.t, trajectory.poses, trajectory.wheel_speeds, experiment.arena, experiment.robot.drive, near
+        trajectory.t, trajectory.poses, trajectory.wheel_speeds, experiment.arena, experiment.fleet.drive, near
     )
     return Metrics(
         angle_errors=errors,

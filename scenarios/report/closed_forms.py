@@ -115,7 +115,7 @@ def _turning(experiment: Experiment, found: ClosedForms) -> list[str]:
     if experiment.plant == "single_integrator":
         return []
     delay, knows = experiment.scenario.sensor.delay_periods, experiment.scenario.sensor.own_motion
-    limit, wheels = found.turning_limit, experiment.robot.drive.speed_limit
+    limit, wheels = found.turning_limit, float(np.min(experiment.fleet.drive.speed_limit))
     limited = experiment.plant != "unicycle" or experiment.safety != "none"
     fastest = min(found.start_speed, wheels) if limited else found.start_speed
     told = []

@@ -95,8 +95,8 @@ def make_guard(experiment: Experiment, batch: tuple[int, ...]) -> Guard | None:
     safety = make_filter(
         experiment.safety,
         (*batch, experiment.n),
-        experiment.robot.drive,
-        experiment.nid,
+        experiment.fleet.drive,
+        experiment.fleet.nid,
         experiment.filter_settings,
         experiment.arena,
     )

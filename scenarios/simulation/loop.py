@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -47,8 +48,9 @@ def simulate(
         experiment.plant,
         points_0,
         theta_0[..., 0],
-        nid=experiment.nid,
-        robot=experiment.robot,
+        nid=experiment.fleet.nid,
+        robot=replace(experiment.robot, drive=experiment.fleet.drive),
+        bodies=experiment.fleet.bodies,
         saturation=experiment.scenario.robot.saturation,
         arena=experiment.arena,
         measured=experiment.measured,

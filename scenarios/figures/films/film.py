@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from scenarios.definition.experiment import Experiment
-from scenarios.figures.floor import limits, placed, prepare, wedge
+from scenarios.figures.floor import limits, placed, prepare, wedges
 from scenarios.figures.happenings import mark_times, news
 from scenarios.figures.palette import FAINT, INK, agent_colour
 from scenarios.figures.style import SMALL, panel
@@ -70,6 +70,7 @@ class Film:
         mark_phases(self._errors, experiment, names=True)
         mark_times(self._errors, experiment, numbers=True)
         self._predicted = reference(experiment, trajectory) if experiment.predicted else None
+        self._outlines, self._wedges = experiment.fleet.outlines, wedges(experiment.fleet)
         self._make_movers()
 
     def frames(self) -> Iterator[Pixels]:
@@ -132,18 +133,18 @@ class Film:
     def _move(self, row: int) -> None:
         """Draw what moves, as it is in a row of the trajectory."""
         points, poses = self._trajectory.points[row], self._trajectory.poses[row]
-        chassis = self._experiment.robot.chassis
+        fleet = self._experiment.fleet
         self._edges.set_segments(list(points[self._edges_at(row)]))
         if self._predicted is not None:
             self._ghosts.set_data(*self._predicted[row].T)
         if self._experiment.plant == "single_integrator":
             self._dots.set_data(*points.T)
         else:
-            self._bodies.set_verts(list(placed(chassis.outline, poses)))
-            self._noses.set_verts(list(placed(wedge(chassis), poses)))
+            self._bodies.set_verts(list(placed(self._outlines, poses)))
+            self._noses.set_verts(list(placed(self._wedges, poses)))
         for artist in (self._edges, self._ghosts, self._bodies, self._noses, self._dots):
             self.floor.draw_artist(artist)
-        for number, point in zip(self._numbers, points + 0.6 * chassis.width, strict=False):
+        for number, point in zip(self._numbers, points + 0.6 * fleet.widest, strict=False):
             number.set_position((point[0], point[1]))
             self.floor.draw_artist(number)
         t = float(self._trajectory.t[row])

@@ -89,7 +89,7 @@ def _near(axes: Axes, record: Record) -> None:
 
 
 def _wheels(axes: Axes, record: Record) -> None:
-    limit = GTERNAL.drive.wheel_speed_limit
+    limit = float(GTERNAL.drive.wheel_speed_limit)
     for robot in range(record.poses.shape[1]):
         axes.plot(record.t[1:], record.wheel_speeds[1:, robot], color=agent_colour(robot), linewidth=0.4, alpha=0.7)
     for level in (-limit, limit):

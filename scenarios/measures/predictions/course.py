@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from formation import agents
 from formation.references.lag import Settled, shape_residual
+from robots.nid import mapped
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.predictions import filtered
 from scenarios.measures.tracking import following
@@ -81,14 +82,15 @@ def course(experiment: Experiment, start: Real) -> Course | None:
 
 def _outrun(experiment: Experiment, velocity: NDArray[np.complex128], t: Real, step: float) -> Outrun | None:
     """The first wheel beyond its limit, of robots whose headings follow velocities (T, n) as the NID map turns them."""
-    to_wheels = experiment.robot.drive.to_wheels @ experiment.nid.to_twist
-    ahead, limit = experiment.nid.projection_distance, experiment.robot.drive.wheel_speed_limit
+    fleet = experiment.fleet
+    to_wheels = (fleet.drive.to_wheels @ fleet.nid.to_twist).swapaxes(-1, -2)
+    ahead, limit = fleet.nid.projection_distance, fleet.drive.wheel_speed_limit
     moving = np.abs(velocity) > 0.0
     first = velocity[moving.argmax(axis=0), np.arange(velocity.shape[1])]
     heading = np.exp(1j * np.angle(first))
     for row, wanted in enumerate(velocity):
         body = wanted * np.conj(heading)
-        wheels = np.abs(np.stack([body.real, body.imag], axis=-1) @ to_wheels.T).max(axis=-1) / limit
+        wheels = np.abs(mapped(np.stack([body.real, body.imag], axis=-1), to_wheels)).max(axis=-1) / limit
         agent = int(wheels.argmax())
         if wheels[agent] > 1.0 + 1e-9:
             return Outrun(agent, float(t[row]), float(np.abs(wanted[agent])), float(wheels[agent]))

@@ -44,7 +44,7 @@ def start_misfits(experiment: Experiment, points: Real, headings: Real) -> list[
     """
     if experiment.plant == "single_integrator":
         return []
-    poses = experiment.nid.poses(points, headings)
+    poses = experiment.fleet.nid.poses(points, headings)
     centres = collision_centres(poses)
     found = [*_too_close(experiment, centres), *_in_a_wall(experiment, centres), *_in_an_obstacle(experiment, centres)]
     outside = np.flatnonzero(~experiment.arena.contains(poses[:, :2]))
@@ -56,9 +56,9 @@ def start_misfits(experiment: Experiment, points: Real, headings: Real) -> list[
 
 def _at_end(experiment: Experiment, end: Real) -> Iterator[str]:
     yield from _too_close(experiment, end)
-    depth, ahead = _depth(experiment, end), experiment.nid.projection_distance
+    depth, ahead = _depth(experiment, end), np.broadcast_to(experiment.fleet.nid.projection_distance, len(end))
     row = int(depth.argmin())
-    if depth[row] < -ahead:  # its axle too, whichever way it heads
+    if depth[row] < -ahead[row]:  # its axle too, whichever way it heads
         yield f"{_at(experiment, row, end)}: off the floor"
     else:
         yield from _in_a_wall(experiment, end)
@@ -84,9 +84,9 @@ def _too_close(experiment: Experiment, points: Real) -> Iterator[str]:
 
 def _in_a_wall(experiment: Experiment, points: Real) -> Iterator[str]:
     """The first chassis that reaches into a wall whichever way it heads."""
-    chassis = experiment.robot.chassis
     depth = _depth(experiment, points)
     row = int(depth.argmin())
+    chassis = experiment.fleet.bodies[row]
     if experiment.arena.walls and 0.0 <= depth[row] < min(chassis.length, chassis.width) / 2.0:
         yield f"{_at(experiment, row, points)}: {depth[row]:.3f} m from a wall, in which its chassis stands"
 

@@ -67,7 +67,7 @@ def wheel_speeds(recorder: Recorder, piece: Piece) -> None:
         return
     speeds = piece.trajectory.wheel_speeds
     _series(recorder, f"{WHEELS}/value", piece.t, speeds.reshape(len(speeds), -1))
-    limit = piece.experiment.robot.drive.wheel_speed_limit
+    limit = float(np.max(piece.experiment.fleet.drive.wheel_speed_limit))
     _level(recorder, f"{WHEELS}/limit", piece, [-limit, limit])
 
 

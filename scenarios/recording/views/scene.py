@@ -87,14 +87,25 @@ def obstacles(recorder: Recorder, experiment: Experiment) -> None:
 def bodies(recorder: Recorder, experiment: Experiment) -> None:
     """The body of each robot, with its number."""
     names = [str(experiment.number(row)) for row in range(experiment.n)]
-    draw_bodies(recorder, experiment.robot, experiment.nid.projection_distance, names)
+    fleet = experiment.fleet
+    for name, body, point, row in zip(
+        names,
+        fleet.bodies,
+        np.broadcast_to(fleet.nid.projection_distance, experiment.n),
+        range(experiment.n),
+        strict=True,
+    ):
+        draw_bodies(recorder, RobotModel(fleet.drive, body), float(point), [name], row)
 
 
-def draw_bodies(recorder: Recorder, robot: RobotModel, point: float, names: Sequence[str]) -> None:
-    """Chassis, wheels, nose and name of each robot, in the frame of its axle's centre, which is ``point`` behind it."""
+def draw_bodies(recorder: Recorder, robot: RobotModel, point: float, names: Sequence[str], first: int = 0) -> None:
+    """Chassis, wheels, nose and name of each robot, in the frame of its axle's centre, which is ``point`` behind it.
+
+    ``first`` is the row of the first one, by which they are coloured.
+    """
     fill, outline, wheels = _body(robot)
     nose = [[point, 0.0]]
-    for row, name in enumerate(names):
+    for row, name in enumerate(names, start=first):
         colour, entity = style.agent_colour(row), f"{ROBOTS}/{name}"
         paint = style.tint(colour, 0.3)
         recorder.fixed(f"{entity}/fill", rr.LineStrips2D(fill, colors=paint, radii=FILL, draw_order=9.0))
