@@ -3,4 +3,4 @@
 Knows no law's code but the feed-forward, no file and no robot.
 """
 
-__all__ = ["curves", "lag", "protocol", "way_points"]
+__all__ = ["curves", "lag", "protocol", "ramps", "way_points"]

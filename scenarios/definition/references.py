@@ -8,6 +8,7 @@ import numpy as np
 
 from formation.references.curves import ClosedCurve, curve_length
 from formation.references.protocol import Reference
+from formation.references.ramps import Ramps
 from formation.references.way_points import WayPoints
 from scenarios.definition.schema import ReferenceTable
 from scenarios.errors import InputError, located
@@ -19,10 +20,14 @@ def build_reference(path: str, table: ReferenceTable) -> Reference:
     Raises:
         InputError: keys that do not belong to the kind, are missing, or make no path; the message names the field.
     """
+    if table.velocities and table.kind != "ramps":
+        raise InputError(f'{path}: reference.velocities: only for kind = "ramps", got "{table.kind}"')
+    if table.points and table.kind != "way-points":
+        raise InputError(f'{path}: reference.points: only for kind = "way-points", got "{table.kind}"')
     if table.kind == "way-points":
         return _way_points(path, table)
-    if table.points:
-        raise InputError(f'{path}: reference.points: only for kind = "way-points", got "{table.kind}"')
+    if table.kind == "ramps":
+        return _ramps(path, table)
     if table.width_m is None:
         raise InputError(f"{path}: reference.width_m: missing, the {table.kind} needs it")
     if (table.height_m is None) != (table.kind == "circle"):
@@ -39,10 +44,22 @@ def build_reference(path: str, table: ReferenceTable) -> Reference:
     )
 
 
-def _way_points(path: str, table: ReferenceTable) -> Reference:
+def _ramps(path: str, table: ReferenceTable) -> Reference:
+    _check_open(path, table, "ramps have times and velocities")
+    times = np.array([each.t_s for each in table.velocities])
+    with located(path, "reference.velocities"):
+        return Ramps(times, np.array([complex(*each.velocity_m_s) for each in table.velocities]))
+
+
+def _check_open(path: str, table: ReferenceTable, have: str) -> None:
+    """Keys of closed curves are refused elsewhere."""
     for key in ("width_m", "height_m", "period_s", "speed_m_s"):
         if getattr(table, key) is not None:
-            raise InputError(f"{path}: reference.{key}: only for closed curves, way-points have times and places")
+            raise InputError(f"{path}: reference.{key}: only for closed curves, {have}")
+
+
+def _way_points(path: str, table: ReferenceTable) -> Reference:
+    _check_open(path, table, "way-points have times and places")
     times = np.array([point.t_s for point in table.points])
     places = np.array([complex(*point.position_m) for point in table.points])
     with located(path, "reference.points"):

@@ -110,12 +110,21 @@ class WayPointTable(Table):
     """Of the formation, counter-clockwise, not wrapped; differences from the first count."""
 
 
+class RampTable(Table):
+    """A velocity that the leader has at a time."""
+
+    t_s: NotNegative
+    """Seconds since the start; the first is 0, and they increase."""
+    velocity_m_s: Vector
+    """v_r then, in the common frame."""
+
+
 class ReferenceTable(Table):
     """A motion that changes all the time, in the place of phases: a closed curve, or way-points with times."""
 
-    kind: Literal["circle", "ellipse", "figure-eight", "way-points"]
+    kind: Literal["circle", "ellipse", "figure-eight", "way-points", "ramps"]
     """The leader's path. Way-points are joined by cubic splines, twice continuously differentiable, at rest at both
-    ends."""
+    ends. Ramps are velocities at times, joined by straight lines; the last one is kept."""
     width_m: Positive | None = None
     """Of a closed curve, along `direction_deg`; the diameter of a circle."""
     height_m: Positive | None = None
@@ -134,9 +143,11 @@ class ReferenceTable(Table):
     """delta_12 at the start, in the common frame; the target's where absent."""
     points: Annotated[tuple[WayPointTable, ...], Field(max_length=LONGEST_RUN)] = ()
     """Way-points."""
+    velocities: Annotated[tuple[RampTable, ...], Field(max_length=LONGEST_RUN)] = ()
+    """Of ramps."""
     file: str | None = None
-    """In their place, a comma-separated file with the columns t_s, x_m, y_m and, if you like, scale and turn_deg, read
-    when the scenario is; its path starts where the scenario file is."""
+    """In the place of way-points, a comma-separated file with the columns t_s, x_m, y_m and, if you like, scale and
+    turn_deg, read when the scenario is; its path starts where the scenario file is."""
 
 
 class LawTable(Table):

@@ -12,6 +12,7 @@ from formation.plane import as_complex, as_vectors
 from formation.references.curves import CURVES, ClosedCurve, curve_length
 from formation.references.lag import Settled, shape_residual
 from formation.references.protocol import Reference, pair_displacement
+from formation.references.ramps import Ramps
 from formation.references.way_points import WayPoints
 
 STEP = 1e-5
@@ -138,3 +139,21 @@ def test_what_a_first_follower_does_not_steer_stays_or_is_fed_forward(
     way = WayPoints(np.array([0.0, 9.0]), np.zeros(2) + 0j, np.array([2.0, 1.0]), np.array([0.0, 1.0]))
     e = pair_displacement(way, 0.5 * np.exp(0.2j), 2.0 * np.exp(0.7j), law, told, 9.0)
     assert abs(e - size * np.exp(1j * turn)) < 1e-12
+
+
+def test_ramps_pass_the_velocities_they_are_told_on_straight_lines_and_keep_the_last() -> None:
+    told = np.array([0.0, 0.1, 0.1 + 0.05j, 0.02j])
+    ramps = Ramps(np.array([0.0, 2.0, 5.0, 6.0]), told)
+    np.testing.assert_allclose(ramps.velocity(np.array([0.0, 2.0, 5.0, 6.0, 9.0])), [*told, told[-1]])
+    np.testing.assert_allclose(ramps.velocity(1.0), 0.05)
+    t = np.linspace(0.0, 9.0, 9001)
+    summed = np.concatenate([[0.0], np.cumsum((ramps.velocity(t)[1:] + ramps.velocity(t)[:-1]) / 2.0 * np.diff(t))])
+    np.testing.assert_allclose(ramps.path(t), summed, atol=1e-12)
+    assert (ramps.factor(t) == 1.0).all()
+    assert (ramps.rate(t) == 0.0).all()
+
+
+@pytest.mark.parametrize("times", [[0.0], [1.0, 2.0], [0.0, 2.0, 2.0]])
+def test_ramps_begin_at_0_and_go_forward(times: list[float]) -> None:
+    with pytest.raises(ValueError, match="times must begin with 0 and increase"):
+        Ramps(np.array(times), np.zeros(len(times), dtype=complex))

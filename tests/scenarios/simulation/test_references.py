@@ -145,3 +145,27 @@ def test_a_file_that_holds_no_way_points_is_refused_with_its_place(
 def test_references_that_make_no_sense_are_refused(changes: tuple[str, ...], message: str) -> None:
     with pytest.raises(InputError, match=message):
         open_experiment("circle", changes)
+
+
+RAMPS = "[{t_s=0.0, velocity_m_s=[0.0, 0.0]}, {t_s=8.0, velocity_m_s=[0.04, 0.0]}, {t_s=12.0, velocity_m_s=[0.0, 0.0]}]"
+
+
+def test_a_formation_on_ramps_follows_its_leader_exactly_where_v_r_is_known_to_all() -> None:
+    changes = ("law.feedforward=false", f"reference={{kind='ramps', velocities={RAMPS}, displacement_m=[0.4, 0.0]}}")
+    experiment = open_experiment("circle", (IDEAL, *changes), 60.0)
+    trajectory = simulate(experiment, 0)
+    np.testing.assert_allclose(trajectory.points[-1], reference(experiment, trajectory)[-1], atol=1e-6)
+    assert trajectory.points[-1, 0, 0] - trajectory.points[0, 0, 0] == pytest.approx(0.04 * 12.0 / 2.0, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ((f"reference.velocities={RAMPS}",), 'reference.velocities: only for kind = "ramps", got "circle"'),
+        (("reference={kind='ramps'}",), "reference.velocities: times must begin with 0 and increase"),
+        (("reference.kind=ramps",), "reference.width_m: only for closed curves, ramps have times and velocities"),
+    ],
+)
+def test_ramps_that_make_no_sense_are_refused(changes: tuple[str, ...], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        open_experiment("circle", ("law.feedforward=false", *changes))
