@@ -11,10 +11,11 @@ class WayPoints:
     """A leader through given places at given times, and a formation that scales and turns on the way.
 
     Between them the path, the logarithm of the scale and the turn are cubic splines, twice continuously
-    differentiable (scipy's ``CubicSpline``). The reference begins and ends at rest, and stays at rest after the last.
+    differentiable (scipy's ``CubicSpline``). The reference begins and ends at rest, or, ``moving``, as the points next
+    to its ends suggest (not-a-knot), and stays at rest after the last.
     """
 
-    def __init__(self, times: Real, places: Complex, scales: Real, turns: Real) -> None:
+    def __init__(self, times: Real, places: Complex, scales: Real, turns: Real, moving: bool = False) -> None:
         """Interpolate.
 
         Args:
@@ -22,6 +23,7 @@ class WayPoints:
             places: (P,) of the leader, complex metres; differences from the first count.
             scales: (P,) of the formation, positive; ratios to the first count.
             turns: (P,) of the formation, radians, not wrapped; differences from the first count.
+            moving: whether it need not be at rest at its ends.
         """
         from scipy.interpolate import CubicSpline
 
@@ -31,8 +33,9 @@ class WayPoints:
             raise ValueError("scales must be positive")
         log_factor = np.log(scales / scales[0]) + 1j * (turns - turns[0])
         self._end = float(times[-1])
-        self._path = CubicSpline(times, places - places[0], bc_type="clamped")
-        self._log_factor = CubicSpline(times, log_factor, bc_type="clamped")
+        ends = "not-a-knot" if moving else "clamped"
+        self._path = CubicSpline(times, places - places[0], bc_type=ends)
+        self._log_factor = CubicSpline(times, log_factor, bc_type=ends)
 
     @property
     def cycle(self) -> float | None:

@@ -20,6 +20,10 @@ def build_reference(path: str, table: ReferenceTable) -> Reference:
     Raises:
         InputError: keys that do not belong to the kind, are missing, or make no path; the message names the field.
     """
+    if table.function is not None:
+        raise InputError(f"{path}: reference.function: only with reference.file, a Python file")
+    if table.ends == "moving" and table.kind != "way-points":
+        raise InputError(f'{path}: reference.ends: only for kind = "way-points", got "{table.kind}"')
     if table.velocities and table.kind != "ramps":
         raise InputError(f'{path}: reference.velocities: only for kind = "ramps", got "{table.kind}"')
     if table.points and table.kind != "way-points":
@@ -68,4 +72,5 @@ def _way_points(path: str, table: ReferenceTable) -> Reference:
             places,
             np.array([point.scale for point in table.points]),
             np.radians([point.turn_deg for point in table.points]),
+            table.ends == "moving",
         )

@@ -147,7 +147,13 @@ class ReferenceTable(Table):
     """Of ramps."""
     file: str | None = None
     """In the place of way-points, a comma-separated file with the columns t_s, x_m, y_m and, if you like, scale and
-    turn_deg, read when the scenario is; its path starts where the scenario file is."""
+    turn_deg, or a Python file, executed: read when the scenario is; its path starts where the scenario file is."""
+    function: str | None = None
+    """Name of a function in the Python file that returns (x_m, y_m) or (x_m, y_m, scale, turn_deg) at t seconds; asked
+    ten times a second, it becomes way-points."""
+    ends: Literal["at-rest", "moving"] = "at-rest"
+    """Whether a way through way-points begins and ends at rest, or in the motion that they suggest; a function's is
+    moving where absent."""
 
 
 class LawTable(Table):

@@ -3,4 +3,4 @@
 What they mean is not decided here.
 """
 
-__all__ = ["law_file", "reading", "robot_file", "way_points"]
+__all__ = ["law_file", "reading", "robot_file", "way_function", "way_points"]

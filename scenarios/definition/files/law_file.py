@@ -87,8 +87,8 @@ class LawFile:
         return str(self.path) if line is None else f"{self.path}:{line}"
 
 
-def read(scenario: str, folder: Path, name: str) -> LawFile:
-    """Read the law file ``name`` of a scenario that lies in ``folder``.
+def read(scenario: str, folder: Path, name: str, key: str = "law.file") -> LawFile:
+    """Read the file ``name``, the value of ``key``, of a scenario that lies in ``folder``.
 
     Raises:
         InputError: it cannot be read; the message names the scenario.
@@ -97,10 +97,10 @@ def read(scenario: str, folder: Path, name: str) -> LawFile:
     try:
         return LawFile(path, read_regular(path))
     except FileNotFoundError:
-        raise InputError(f"{scenario}: law.file: no such file: {path}") from None
+        raise InputError(f"{scenario}: {key}: no such file: {path}") from None
     except (OSError, ValueError) as error:  # a path with a null byte
         reason = error.strerror if isinstance(error, OSError) else error
-        raise InputError(f"{scenario}: law.file: {path} cannot be read: {reason}") from None
+        raise InputError(f"{scenario}: {key}: {path} cannot be read: {reason}") from None
 
 
 def _assigned(body: list[ast.stmt], name: str) -> str | None:

@@ -7,6 +7,7 @@ import io
 from pathlib import Path
 from typing import Any
 
+from scenarios.definition.files import way_function
 from scenarios.definition.files.reading import read_regular
 from scenarios.errors import InputError, did_you_mean
 
@@ -33,6 +34,8 @@ def with_file(data: dict[str, Any], scenario: str, folder: Path) -> dict[str, An
     if "points" in table:
         raise InputError(f"{scenario}: reference.file: expected either file or points, got both")
     path = folder / table["file"]
+    if path.suffix == ".py":
+        return _with_function(data, table, scenario, path)
     try:
         text = read_regular(path).decode("utf-8-sig")
     except (OSError, ValueError) as error:  # also bytes that are no text, and a path with a null byte
@@ -40,6 +43,17 @@ def with_file(data: dict[str, Any], scenario: str, folder: Path) -> dict[str, An
         raise InputError(f"{scenario}: reference.file: {path} cannot be read: {reason}") from None
     del table["file"]
     table["points"] = read_points(text, str(path))
+    return data
+
+
+def _with_function(data: dict[str, Any], table: dict[str, Any], scenario: str, path: Path) -> dict[str, Any]:
+    seconds = data.get("duration_s")
+    if isinstance(seconds, bool) or not isinstance(seconds, int | float):
+        raise InputError(f"{scenario}: duration_s: missing, a function needs to know until when")
+    name = table.pop("function", None)
+    del table["file"]
+    table["points"] = way_function.read_points(path, name, float(seconds), scenario)
+    table.setdefault("ends", "moving")
     return data
 
 

@@ -169,3 +169,55 @@ def test_a_formation_on_ramps_follows_its_leader_exactly_where_v_r_is_known_to_a
 def test_ramps_that_make_no_sense_are_refused(changes: tuple[str, ...], message: str) -> None:
     with pytest.raises(InputError, match=message):
         open_experiment("circle", ("law.feedforward=false", *changes))
+
+
+FUNCTION = """
+from math import cos, degrees, sin
+
+def way(t):
+    return 0.5 * sin(0.2 * t), 0.5 - 0.5 * cos(0.2 * t), 1.0, degrees(0.2 * t)
+
+def short(t):
+    return (1.0,)
+
+def failing(t):
+    return t / 0.0, 0.0
+"""
+
+
+def filed(tmp_path: Path, table: str) -> str:
+    text = (LIBRARY / "circle.toml").read_text(encoding="utf-8")
+    start, end = text.index("[reference]"), text.index("[arena]")
+    (tmp_path / "way.toml").write_text(f"{text[:start]}[reference]\n{table}\n\n{text[end:]}", encoding="utf-8")
+    (tmp_path / "way.py").write_text(FUNCTION)
+    return str(tmp_path / "way.toml")
+
+
+def test_a_python_function_is_followed_as_the_curve_that_it_describes(tmp_path: Path) -> None:
+    path = filed(tmp_path, 'kind = "way-points"\nfile = "way.py"\nfunction = "way"\ndisplacement_m = [0.4, 0.0]')
+    experiment = open_experiment(path, (IDEAL,))
+    told = experiment.phases[0].reference
+    assert told is not None
+    t = np.linspace(0.0, experiment.phases[0].duration, 997)
+    np.testing.assert_allclose(told.path(t), 0.5 * np.sin(0.2 * t) + 0.5j * (1.0 - np.cos(0.2 * t)), atol=1e-8)
+    np.testing.assert_allclose(told.velocity(t[:-1]), 0.1 * np.exp(0.2j * t[:-1]), atol=1e-6)
+    np.testing.assert_allclose(told.rate(t[:-1]), 0.2j, atol=1e-6)
+    assert experiment.file.scenario.reference is not None
+    assert experiment.file.scenario.reference.file is None
+    assert residual(experiment) < 1e-5
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        ('file = "way.py"', "reference.function: missing, the name of a function in"),
+        ('file = "way.py"\nfunction = "wya"', "has no function 'wya', did you mean 'way'"),
+        ('file = "way.py"\nfunction = "short"', r"short\(0\): expected \(x_m, y_m\) or \(x_m, y_m, scale, turn_deg\)"),
+        ('file = "way.py"\nfunction = "failing"', r"way.py:11: failing\(0\) raised ZeroDivisionError"),
+        ('file = "no.py"\nfunction = "way"', "reference.file: no such file"),
+        ('function = "way"\npoints = []', "reference.function: only with reference.file, a Python file"),
+    ],
+)
+def test_a_function_that_makes_no_way_is_refused_with_its_place(tmp_path: Path, table: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        open_experiment(filed(tmp_path, f'kind = "way-points"\n{table}'))
