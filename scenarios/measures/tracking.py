@@ -84,8 +84,8 @@ def told(experiment: Experiment) -> bool:
 def track(experiment: Experiment, trajectory: Trajectory) -> Tracking:
     """The tracking errors of a single run."""
     wanted = reference(experiment, trajectory)
-    scale, angle, centroid = _fits(experiment, trajectory.phase, trajectory.points)
-    scale_0, angle_0, centroid_0 = _fits(experiment, trajectory.phase, wanted)
+    scale, angle, centroid = fits(experiment, trajectory.phase, trajectory.points)
+    scale_0, angle_0, centroid_0 = fits(experiment, trajectory.phase, wanted)
     return Tracking(
         scale=scale / scale_0 - 1.0,
         orientation=wrap(angle - angle_0),
@@ -94,7 +94,7 @@ def track(experiment: Experiment, trajectory: Trajectory) -> Tracking:
     )
 
 
-def _fits(experiment: Experiment, phase: NDArray[np.intp], points: Real) -> tuple[Real, Real, Real]:
+def fits(experiment: Experiment, phase: NDArray[np.intp], points: Real) -> tuple[Real, Real, Real]:
     """Scale (T,), angle (T,) and centroid (T, 2) of points (T, n, 2) in phases (T,), each of its phase's shape."""
     if not experiment.shapes:
         return fit_similarity(experiment.formation, points)

@@ -8,10 +8,10 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from formation import fit_similarity, wrap
+from formation import wrap
 from robots.testbed import COLLISION_DISTANCE
 from scenarios.definition.experiment import Experiment
-from scenarios.measures.tracking import moving_ends
+from scenarios.measures.tracking import fits, moving_ends
 from scenarios.recording.piece import Piece, Real
 from scenarios.recording.recorder import Recorder
 from scenarios.recording.views import style
@@ -101,8 +101,8 @@ def tracking(recorder: Recorder, piece: Piece) -> None:
     """
     experiment, points = piece.experiment, piece.trajectory.points
     wanted = moving_ends(experiment, piece.start, piece.t, piece.trajectory.phase)
-    scale, angle, centroid = fit_similarity(experiment.formation, points)
-    scale_0, angle_0, centroid_0 = fit_similarity(experiment.formation, wanted)
+    scale, angle, centroid = fits(experiment, piece.trajectory.phase, points)
+    scale_0, angle_0, centroid_0 = fits(experiment, piece.trajectory.phase, wanted)
     angle_0 = wrap(angle_0)
     for entity, measured, predicted in (
         (SCALE, scale, scale_0),

@@ -142,21 +142,32 @@ def sensing(recorder: Recorder, piece: Piece) -> None:
 
     It leaves out what the two bodies cover.
     """
-    observer, observed = piece.experiment.graph.edges.T
-    rows = _finite(piece.trajectory.points)
+    for experiment, rows in _by_shape(piece, _finite(piece.trajectory.points)):
+        _arrows(recorder, piece, experiment.graph.edges, rows)
+
+
+def _by_shape(piece: Piece, rows: Index) -> list[tuple[Experiment, Index]]:
+    """Rows of a piece with the experiment whose shape they have; all at once where the shape never changes."""
+    if not piece.experiment.shapes:
+        return [(piece.experiment, rows)]
+    phase = piece.trajectory.phase[rows]
+    return [(piece.experiment.of_phase(index), rows[phase == index]) for index in np.unique(phase).tolist()]
+
+
+def _arrows(recorder: Recorder, piece: Piece, edges: Index, rows: Index) -> None:
+    observer, observed = edges.T
     points = piece.trajectory.points[rows]
     e = points[:, observed] - points[:, observer]
     length = np.linalg.norm(e, axis=-1, keepdims=True)
     inset = np.minimum(style.ARROW_INSET / np.maximum(length, 1e-9), 0.5)
     if piece.experiment.events:
-        inset = np.where(_lost(piece, rows)[..., None], 0.5, inset)  # an arrow without length
+        inset = np.where(_lost(piece, rows, len(edges))[..., None], 0.5, inset)  # an arrow without length
     origins, vectors = points[:, observer] + inset * e, (1.0 - 2.0 * inset) * e
     recorder.columns(SENSING, piece.t[rows], rr.Arrows2D.columns(origins=origins, vectors=vectors))
 
 
-def _lost(piece: Piece, rows: Index) -> NDArray[np.bool_]:
-    """(T', m) which edges of the graph an event has taken, at rows of the piece."""
-    m = len(piece.experiment.graph.edges)
+def _lost(piece: Piece, rows: Index, m: int) -> NDArray[np.bool_]:
+    """(T', m) which of the m edges of the graph an event has taken, at rows of the piece."""
     states = zip(piece.t[rows].tolist(), piece.trajectory.phase[rows].tolist(), strict=True)
     return np.array([lost_edges(piece.experiment, t, index)[:m] for t, index in states]).reshape(-1, m)
 
@@ -204,13 +215,15 @@ def prediction(recorder: Recorder, piece: Piece) -> None:
     else:
         rows = np.arange(0, len(piece.t), GHOST_PERIODS)
         ends = following(piece.experiment, piece.start, piece.t[rows])
-    observer, observed = piece.experiment.graph.edges.T
     turn = np.linspace(0.0, 2.0 * np.pi, 25)
     rings = ends[:, :, None] + RING * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
-    links = np.stack([ends[:, observer], ends[:, observed]], axis=2)
     t = piece.t[np.maximum(rows - 1, 0)]
     recorder.columns(f"{PREDICTION}/rings", t, _strips(rings))
-    recorder.columns(f"{PREDICTION}/links", t, _strips(links))
+    for experiment, some in _by_shape(piece, rows):
+        observer, observed = experiment.graph.edges.T
+        there = np.isin(rows, some)
+        links = np.stack([ends[there][:, observer], ends[there][:, observed]], axis=2)
+        recorder.columns(f"{PREDICTION}/links", t[there], _strips(links))
 
 
 def prediction_style(recorder: Recorder, experiment: Experiment) -> None:

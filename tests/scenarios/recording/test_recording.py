@@ -37,9 +37,10 @@ from scenarios.recording.file import damage, write
 from scenarios.recording.piece import rows, whole
 from scenarios.recording.recorder import TIMELINE, Recorder, open_stream
 from scenarios.recording.streams import send_motion, send_setup
-from scenarios.recording.views import plots, scene, timeline
+from scenarios.recording.views import happenings, plots, scene, timeline
 from scenarios.replay import recording_of
 from scenarios.simulation.loop import simulate
+from scenarios.simulation.trajectory import Trajectory
 from scenarios.storage import run_folder
 
 Columns = dict[str, dict[str, tuple[np.ndarray, list]]]
@@ -453,3 +454,44 @@ def test_nothing_of_rerun_is_imported_before_a_recording_is_asked_for() -> None:
     code = f"import {modules}; print([m for m in sys.modules if m == 'rerun'])"
     shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert shown.stdout.strip() == "[]"
+
+
+def test_events_are_in_the_log_and_on_the_floor_and_lost_edges_have_no_arrow(tmp_path: Path) -> None:
+    events = (
+        "events=[{t_s=1.0, kind='edge-loss', edge=[4, 3], until_s=2.0}, {t_s=1.5, kind='stop', agent=5}, "
+        "{t_s=2.5, kind='obstacle', vertices_m=[[1.2, 0.8]], radius_m=0.1}]"
+    )
+    experiment = open_experiment("shape", (events,), 4.0)
+    path, trajectory, _ = encoded(experiment, tmp_path / "events.rrd")
+    found = read(path)
+    times, texts = found[f"/{timeline.EVENTS}/happenings"]["text"]
+    assert dict(zip([str(*text) for text in texts], (times / 1e9).tolist(), strict=True)) == {
+        "agent 4 does not sense agent 3 until 2 s": 1.0,
+        "agent 4 senses agent 3": 2.0,
+        "agent 5 stops for good": 1.5,
+        "an obstacle appears at (1.2, 0.8) m for good": 2.5,
+    }
+    signs = {entity for entity in found if entity.startswith(f"/{happenings.SIGNS}")}
+    assert signs == {f"/{happenings.SIGNS}/{each}" for each in ("1", "2", "3", "3/outline")}
+    times, arrows = found[f"/{scene.SENSING}"]["vectors"]
+    lengths = np.linalg.norm(np.array(arrows)[:, 4], axis=-1)
+    lost = (times / 1e9 >= 1.0 - 1e-6) & (times / 1e9 < 2.0 - 1e-6)
+    np.testing.assert_allclose(lengths[lost], 0.0, atol=1e-7)
+    assert (lengths[~lost] > 0.01).all()
+    assert isinstance(trajectory, Trajectory)
+    place = np.array(found[f"/{happenings.SIGNS}/2"]["positions"][1][0])[0]
+    np.testing.assert_allclose(place, trajectory.points[np.searchsorted(trajectory.t, 1.5), 4], atol=1e-6)
+
+
+def test_arrows_follow_the_graph_of_the_shape_of_the_time(tmp_path: Path) -> None:
+    experiment = open_experiment("reshape", ("safety.filter=none",), 41.0)
+    path, trajectory, _ = encoded(experiment, tmp_path / "reshape.rrd")
+    assert isinstance(trajectory, Trajectory)
+    times, arrows = read(path)[f"/{scene.SENSING}"]["vectors"]
+    assert len(times) == len(trajectory.t)
+    for row in (0, len(times) - 1):
+        shaped = experiment.of_phase(int(trajectory.phase[row]))
+        observer, observed = shaped.graph.edges.T
+        e = trajectory.points[row, observed] - trajectory.points[row, observer]
+        vectors = np.array(arrows[np.argsort(times)[row]])
+        np.testing.assert_allclose(vectors[:, 0] * e[:, 1] - vectors[:, 1] * e[:, 0], 0.0, atol=1e-6)
