@@ -26,8 +26,8 @@ from robots.worlds import make_world as make_world
 __all__ = [
     "Arena",
     "Chassis",
-    "Fleet",
     "DifferentialDrive",
+    "Fleet",
     "GTERNAL",
     "Imperfections",
     "Instruments",

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.arena import Arena
-from robots.model import Chassis
 from robots.obstacles import Obstacle
 from robots.safety.protocol import WALLS
 from scenarios.definition.experiment import Experiment
@@ -72,7 +71,7 @@ def clearance(experiment: Experiment, trajectory: Trajectory) -> Clearance | Non
     points = nearest_points(arena, trajectory.points, there)
     if experiment.plant == "single_integrator":
         return Clearance(points, None)
-    return Clearance(points, nearest_hulls(arena, experiment.robot.chassis, trajectory.poses, there))
+    return Clearance(points, nearest_hulls(arena, experiment.fleet.outlines, trajectory.poses, there))
 
 
 def standing_at(experiment: Experiment, t: Real) -> There | None:
@@ -96,11 +95,12 @@ def nearest_points(arena: Arena, points: Real, there: There | None = None) -> Ne
     return _in_parts(points, lambda part: [_to_walls(arena, part), *(o.distance(part) for o in arena.obstacles)], there)
 
 
-def nearest_hulls(arena: Arena, chassis: Chassis, poses: Real, there: There | None = None) -> Nearest:
-    """Of chassis at poses (T, n, 3), metres and radians; ``there`` as for points."""
+def nearest_hulls(arena: Arena, outlines: Real, poses: Real, there: There | None = None) -> Nearest:
+    """Of chassis with corners (n, 4, 2) in their own frames, at poses (T, n, 3), metres and radians; ``there`` as for
+    points."""
 
     def gaps(part: Real) -> list[Real]:
-        corners = _corners(chassis, part)
+        corners = _corners(outlines, part)
         walls = _to_walls(arena, corners).min(axis=-2)
         return [walls, *(hull_distance(obstacle, corners) for obstacle in arena.obstacles)]
 
@@ -131,10 +131,10 @@ def _core_depth(vertices: Real, corners: Real) -> Real:
     return ((corners @ normal.T).min(axis=-2) - offset).max(axis=-1)
 
 
-def _corners(chassis: Chassis, poses: Real) -> Real:
-    """(..., 4, 2) corners of chassis at poses (..., 3), metres."""
+def _corners(outlines: Real, poses: Real) -> Real:
+    """(..., n, 4, 2) corners, metres, of chassis with corners (n, 4, 2) in their own frames, at poses (..., n, 3)."""
     axis = np.exp(1j * poses[..., 2])
-    outline = chassis.outline @ np.array([1.0, 1j])
+    outline = outlines @ np.array([1.0, 1j])
     centre = poses[..., 0] + 1j * poses[..., 1]
     turned = centre[..., None] + axis[..., None] * outline
     return np.stack([turned.real, turned.imag], axis=-1)

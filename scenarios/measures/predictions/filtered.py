@@ -44,9 +44,9 @@ def settled(experiment: Experiment, start: Real, reference: Reference, delta: co
     """
     told, t = experiment.scenario.law.feedforward, cycle(reference)
     motion = Settled(experiment.target, reference, told, experiment.own_gains, (delta, period))
-    y = motion()
+    y, fleet = motion(), experiment.fleet
     safety = make_filter(
-        experiment.safety, y.shape, experiment.robot.drive, experiment.nid, experiment.filter_settings, experiment.arena
+        experiment.safety, y.shape, fleet.drive, fleet.nid, experiment.filter_settings, experiment.arena
     )
     if safety is None:
         return y
@@ -56,7 +56,7 @@ def settled(experiment: Experiment, start: Real, reference: Reference, delta: co
     for _ in range(SWEEPS):
         relative = delta * (np.roll(y, -1, axis=0) - np.roll(y, 1, axis=0)) / (2.0 * (t[1] - t[0]))
         way = common + pushed[:, :1] + relative
-        heading = _headings(way, t[1] - t[0], experiment.nid.projection_distance)
+        heading = _headings(way, t[1] - t[0], fleet.nid.projection_distance)
         pushed = _pushes(safety, leader + delta * y, heading, way - pushed, common, period)
         before, y = y, motion(pushed / delta)
         if np.abs(y - before).max() < UNCHANGED:
@@ -72,11 +72,11 @@ def _pushes(
     return as_complex(safety.filter(as_vectors(places), as_vectors(heading), own, shared, period)) * heading - law
 
 
-def _headings(way: Complex, step: float, ahead: float) -> Complex:
+def _headings(way: Complex, step: float, ahead: float | Real) -> Complex:
     """(S, n) headings, as unit complex numbers, of robots whose points follow the way (S, n) of a cycle for a while."""
     found = np.empty_like(way)
     heading = np.exp(1j * np.angle(way[0]))
-    parts = max(1, int(np.ceil(np.abs(way).max() * step / (TURN * ahead))))
+    parts = max(1, int(np.ceil(np.abs(way).max() * step / (TURN * np.min(ahead)))))
     for _ in range(ROUNDS):
         for row, wanted in enumerate(way):
             found[row] = heading

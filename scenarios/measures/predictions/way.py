@@ -75,7 +75,7 @@ def _meetings(experiment: Experiment, t: Real, places: Real) -> Iterator[str]:
     if experiment.safety in FILTERED:
         of_walls = of_obstacles = (kept, f"the safety filter keeps {kept:g} m")
     else:
-        of_walls = (experiment.robot.chassis.length / 2.0, "in which its chassis stands")
+        of_walls = (max(body.length for body in experiment.fleet.bodies) / 2.0, "in which its chassis stands")
         of_obstacles = (OBSTACLE_DISTANCE, f"the testbed rejects less than {OBSTACLE_DISTANCE:g} m")
     if arena.walls:
         for side in range(WALLS):
@@ -106,7 +106,7 @@ def _meeting(experiment: Experiment, t: Real, gaps: Real, thing: str, least: flo
 
 def _leaving(experiment: Experiment, t: Real, depth: Real) -> Iterator[str]:
     """Who first leaves the floor, axle and all, by distances (T, n) from its border."""
-    outside = np.flatnonzero((depth < -experiment.nid.projection_distance).any(axis=1))
+    outside = np.flatnonzero((depth < -experiment.fleet.nid.projection_distance).any(axis=1))
     if outside.size:
         first = int(outside[0])
         yield f"the floor's border, which {experiment.name(int(depth[first].argmin()))} would cross at {t[first]:.1f} s"

@@ -56,7 +56,7 @@ def test_a_bar_across_a_hull_is_in_it_though_neither_has_a_corner_in_the_other()
 @given(st.lists(st.tuples(*[st.floats(-1.5, 1.5)] * 3), min_size=1, max_size=5))
 def test_the_nearest_is_named_with_its_agent_and_its_thing(poses: list[tuple[float, float, float]]) -> None:
     states = np.array([poses])
-    points, hulls = nearest_points(ARENA, states[..., :2]), nearest_hulls(ARENA, GTERNAL.chassis, states)
+    points, hulls = nearest_points(ARENA, states[..., :2]), nearest_hulls(ARENA, GTERNAL.chassis.outline, states)
     x, y = states[0, int(points.row[0]), :2]
     gaps = [y + 1.0, 1.0 - x, 1.0 - y, x + 1.0, float(np.hypot(x, y)) - 0.1]
     assert points.distance[0] == pytest.approx(gaps[int(points.thing[0])], abs=1e-12)
@@ -71,9 +71,9 @@ def test_walls_and_obstacles_are_named_as_everywhere() -> None:
 
 def test_long_runs_are_looked_at_in_parts_that_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     poses = np.random.default_rng(0).uniform(-1.0, 1.0, (9, 4, 3))
-    whole = nearest_hulls(ARENA, GTERNAL.chassis, poses)
+    whole = nearest_hulls(ARENA, GTERNAL.chassis.outline, poses)
     monkeypatch.setattr("scenarios.measures.clearance.MOST_STATES", 8)
-    parts = nearest_hulls(ARENA, GTERNAL.chassis, poses)
+    parts = nearest_hulls(ARENA, GTERNAL.chassis.outline, poses)
     np.testing.assert_array_equal(whole.distance, parts.distance)
     np.testing.assert_array_equal(whole.thing, parts.thing)
 
