@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from scenarios.figures.palette import INK
+from scenarios.figures.palette import FAINT, INK
 from scenarios.figures.style import SMALL
 
 Real = NDArray[np.float64]
@@ -56,7 +56,8 @@ class Labels:
     def put(self, anchor: Real, text: str, distance: float, size: float = SMALL, crowded: bool = False) -> None:
         """Write ``text`` near ``anchor`` (2,), metres, with its centre ``distance`` points away or somewhat more.
 
-        Where the axes are ``crowded``, a label without a free place is left out.
+        One that is far off is led back by a line. Where the axes are ``crowded``, a label without a free place is left
+        out.
         """
         centre = anchor * self._scale
         half_width = 0.25 * size * len(text)
@@ -68,7 +69,11 @@ class Labels:
         score = self._clearance(candidates, half_width, size) - loss
         if crowded and score.max() < _LEGIBLE * size:
             return
-        best = candidates[int(score.argmax())]
+        chosen = int(score.argmax())
+        best = candidates[chosen]
+        if chosen >= _DIRECTIONS * (len(_RINGS) - 1):  # too far off for the eye to join them
+            ends = np.stack([centre, best - np.clip(best - centre, -half_width, half_width) * [1.0, 0.0]]) / self._scale
+            self._axes.plot(*ends.T, color=FAINT, linewidth=0.5, zorder=1.6, solid_capstyle="butt")
         across = np.array([[-half_width, 0.0], [0.0, 0.0], [half_width, 0.0]])
         self._labels = np.concatenate([self._labels, best + across])
         x, y = best / self._scale
