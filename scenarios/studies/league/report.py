@@ -5,21 +5,18 @@ from __future__ import annotations
 import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import sqrt
 
 from rich.console import Console
 
 from formation import needs
 from formation.graph.designs import DESIGNS
 from scenarios.documents import markdown_table
+from scenarios.studies.league.beside import beside, interval
 from scenarios.studies.league.citations import CITATIONS, Citation
 from scenarios.studies.league.ends import ENDS, RIGHT, STILL, TOLERANCE
 from scenarios.studies.league.ideal import BOX, NEAR
 from scenarios.studies.league.measure import COMPASS_DEG, PLANTS, Row
 from scenarios.terminal import new_table, print_table
-
-NORMAL = 1.959963984540054
-"""Standard deviations of a 95 % interval."""
 
 
 @dataclass(frozen=True)
@@ -30,18 +27,6 @@ class Sheet:
     columns: tuple[str, ...]
     numbers: int
     rows: Sequence[tuple[str, ...]]
-
-
-def interval(reached: int, runs: int) -> tuple[float, float]:
-    """Wilson's 95 % interval of a share.
-
-    >>> [round(bound, 4) for bound in interval(0, 1000)]
-    [0.0, 0.0038]
-    """
-    share, spread = reached / runs, NORMAL**2 / runs
-    middle = (share + spread / 2.0) / (1.0 + spread)
-    half = NORMAL * sqrt(share * (1.0 - share) / runs + spread / runs / 4.0) / (1.0 + spread)
-    return max(0.0, middle - half), min(1.0, middle + half)
 
 
 def sheets(rows: Sequence[Row]) -> list[Sheet]:
@@ -108,10 +93,18 @@ def remarks(rows: Sequence[Row], robots: int) -> list[str]:
         f"{', '.join(f'{sigma:g}' for sigma in NEAR)} of its radius. Compass, residual, drift: with constant compass "
         f"errors of {COMPASS_DEG:g} degrees, the share that is right, the median residual, and the speed in the end, "
         "its quantiles at 5, 50 and 95 %.",
+        _on_robots(robots),
+    ]
+
+
+def _on_robots(robots: int) -> str:
+    if not robots:
+        return "Noise, robots: not run; `--robots N` runs N seeds on each plant with wheels."
+    return (
         "Noise: median residual over the last ten seconds on `saturated` with 1 cm, 1 degree and 5 % of noise. "
         f"Robots: how many of {robots} seeds are right on {', '.join(PLANTS)}, from the scenario's starts, with its "
-        "filter.",
-    ]
+        "filter."
+    )
 
 
 def _horizons(rows: Sequence[Row]) -> str:
@@ -145,6 +138,7 @@ def markdown(scenario: str, changes: tuple[str, ...], rows: Sequence[Row], start
     for sheet in sheets(rows):
         lines += ["", f"## {sheet.title}", "", *markdown_table(sheet.columns, sheet.rows, numbers=sheet.numbers)]
     lines += ["", *[line for remark in remarks(rows, robots) for line in (remark, "")]]
+    lines += _first(rows)
     lines += ["## The paper's references", "", *_citations(CITATIONS)]
     lines += [
         "",
@@ -153,6 +147,23 @@ def markdown(scenario: str, changes: tuple[str, ...], rows: Sequence[Row], start
         '`graph = "design"` builds, from the target, what a law needs: ' + ", ".join(sorted(DESIGNS)) + ".",
     ]
     return "\n".join(lines) + "\n"
+
+
+def _first(rows: Sequence[Row]) -> list[str]:
+    counts = {row.entry.name: (row.counts[ENDS.index(RIGHT)], row.runs) for row in rows if row.player is not None}
+    cells = [
+        (
+            each.name,
+            f"{each.first:.1%}",
+            f"{each.here:.1%}",
+            f"{each.low:+.1%} to {each.high:+.1%}",
+            "as before" if each.agree else f"differs: {each.why or 'not explained'}",
+        )
+        for each in beside(counts)
+    ]
+    columns = ("law", "first", "here", "difference, 99.9 %", "")
+    text = "Other code, with other starts (300; the triangle's 1000) in the same square, once gave the shares `first`."
+    return ["## Beside a first computation", "", text, "", *markdown_table(columns, cells), ""]
 
 
 def _citations(citations: Sequence[Citation]) -> list[str]:

@@ -16,6 +16,7 @@ from scenarios.errors import InputError
 from scenarios.measures.metrics import measure
 from scenarios.simulation.loop import simulate
 from scenarios.studies import shares
+from scenarios.studies.league.beside import FIRST, beside
 from scenarios.studies.league.citations import CITATIONS
 from scenarios.studies.league.ends import ENDS, ends
 from scenarios.studies.league.entries import Player, chosen, player
@@ -111,6 +112,16 @@ def test_the_command_writes_tables_page_and_figure(cli: Cli, tmp_path: Path) -> 
     assert "| angle | 100.0% |" in page
     assert "| Jing2020 | - |" in page
     assert (tmp_path / "l.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_shares_agree_with_the_first_ones_where_their_difference_may_be_chance() -> None:
+    assert set(FIRST) <= {entry.name for entry in chosen()}
+    before = FIRST["distance"]
+    same, near, far = (next(beside({"distance": (n, 1000)})) for n in (53, 80, 150))
+    assert (same.agree, near.agree, far.agree) == (True, True, False)
+    assert far.low < far.here - before.right / before.runs < far.high
+    assert next(beside({"angle": (1000, 1000)})).agree
+    assert not next(beside({"angle": (950, 1000)})).agree
 
 
 def test_a_law_that_nobody_knows_is_one_line(cli: Cli) -> None:
