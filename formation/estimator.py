@@ -53,6 +53,10 @@ class VelocityEstimator:
         self._mean = weights / weights.sum(axis=1, keepdims=True)
         self._gain = gain
 
+    def share(self, period: float) -> float:
+        """Of the way to the mean that it hears, what an estimate covers in one period, seconds."""
+        return 1.0 - float(np.exp(-self._gain * period))
+
     def step(self, estimates: Real, velocity: ArrayLike, period: float, heard: NDArray[np.bool_] | None = None) -> Real:
         """The estimates (..., n, 2), m/s, one period (seconds) later, while the leader holds ``velocity`` (2,).
 
@@ -62,7 +66,7 @@ class VelocityEstimator:
         known = estimates.copy()
         known[..., agents.LEADER, :] = velocity
         mean = self._mean if heard is None else self._mean_of(heard)
-        return known + (1.0 - np.exp(-self._gain * period)) * (mean @ known - known)
+        return known + self.share(period) * (mean @ known - known)
 
     def _mean_of(self, heard: NDArray[np.bool_]) -> Real:
         """(..., n, n) rows that average what each agent hears, or keep its own where it hears nobody."""

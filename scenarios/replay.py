@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from scenarios.errors import plain
+from scenarios.errors import InputError, plain
 from scenarios.recording import file, viewer
 from scenarios.storage import run_folder, script_folder
 
@@ -53,9 +53,20 @@ def recording_of(folder: Path, scratch: Path, console: Console) -> Path:
 
 
 def _pair(folders: Sequence[Path], scratch: Path) -> Path:
+    path = scratch / run_folder.RECORDING
+    of_scripts = [script_folder.is_script(folder) for folder in folders]
+    if all(of_scripts):
+        kept = [script_folder.read(folder) for folder in folders]
+        from scenarios.recording.script import encode_scripts
+
+        file.write(path, encode_scripts(kept))
+        return path
+    if any(of_scripts):
+        raise InputError(
+            f"{folders[of_scripts.index(True)]}: the run of a script; only another script's goes beside it"
+        )
     runs = [run_folder.read(folder) for folder in folders]
     from scenarios.recording.encode import encode_pair
 
-    path = scratch / run_folder.RECORDING
     file.write(path, encode_pair(runs))
     return path

@@ -42,8 +42,8 @@ def export(
     """Print a script that runs SCENARIO (a name or a file) on the Robotarium: numpy and rps, nothing else.
 
     A safety filter becomes the Robotarium's certificate. What a script cannot carry is refused. With --check the script
-    is run, from the chargers on as on the testbed, on `saturated` and `pymunk` with several seeds; exit code 1 where a
-    run does not arrive.
+    is run, from the chargers on as on the testbed, on `saturated`, on `pymunk` and with measured robots, with several
+    seeds; exit code 1 where a run does not arrive.
     """
     from scenarios.definition.experiment import open_experiment
     from scenarios.definition.load import changed

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from robots.rps.hook import Version
     from robots.rps.session import Start
 
+LONGEST = 3600.0
+"""Simulated seconds, after which a script without an end is stopped: more than 20 times the longest example."""
+
 
 @click.command()
 @click.argument("file", metavar="FILE.py", type=click.Path(path_type=Path))
@@ -23,7 +26,13 @@ if TYPE_CHECKING:
 @click.option("--measured", is_flag=True, help="With robots as logs and firmware show them.")
 @click.option("--drive-to-start", "driven", is_flag=True, help="Begin at the chargers, as on the testbed.")
 @click.option("--near-start", "near", is_flag=True, help="Begin anywhere within the testbed's tolerance of the start.")
-@click.option("--duration", type=click.FloatRange(min=0.0, min_open=True), metavar="S", help="Stop it after S seconds.")
+@click.option(
+    "--duration",
+    type=click.FloatRange(min=0.0, min_open=True),
+    default=LONGEST,
+    metavar="S",
+    help="Stop it after S simulated seconds.  [default: 3600]",
+)
 @click.option("--rps", "version", type=click.Choice(["1", "2"]), help="Generation.  [default: what its names say]")
 @options.out("Run folder.  [default: runs/FILE-PLANT-seedN]")
 @click.option("--recording/--no-recording", "recorded", default=True, help="Whether to write recording.rrd.")
@@ -37,7 +46,7 @@ def script(
     measured: bool,
     driven: bool,
     near: bool,
-    duration: float | None,
+    duration: float,
     version: str | None,
     out: Path | None,
     recorded: bool,

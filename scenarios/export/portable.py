@@ -19,6 +19,9 @@ ROOM_TO_ARRIVE = 0.35
 """Metres between two axles; where robots start closer, the drive to the start of ``rps`` 2.1 may not end."""
 
 
+_OF_DELAYS = ("own_motion", "gyro_noise_deg_s", "encoder_noise_m_s")  # without a delay they change nothing
+
+
 def start_poses(experiment: Experiment, seed: int) -> Real:
     """(n, 3) poses of the axles' centres at the start of the run with that seed, metres and radians.
 
@@ -71,14 +74,13 @@ def crowded(experiment: Experiment, poses: Real) -> str | None:
 
 def _required(scenario: Scenario) -> list[tuple[str, object, object]]:
     """Field, value and the one value that a script can carry."""
-    sensor = scenario.sensor
+    sensors = type(scenario.sensor).model_fields.items()
     return [
-        ("law.activation", scenario.law.activation, "simultaneous"),
-        ("velocity_known_by", scenario.velocity_known_by, "all"),
         ("robot.wheel_speed_limit_rad_s", scenario.robot.wheel_speed_limit_rad_s, GTERNAL.drive.wheel_speed_limit),
         ("plant.control_period_s", scenario.plant.control_period_s, CONTROL_PERIOD),
-        ("sensor.position_noise_m", sensor.position_noise_m, 0.0),
-        ("sensor.bearing_noise_deg", sensor.bearing_noise_deg, 0.0),
-        ("sensor.compass_bias_deg", sensor.compass_bias_deg, 0.0),
-        ("sensor.delay_periods", sensor.delay_periods, 0),
+        *(
+            (f"sensor.{name}", getattr(scenario.sensor, name), field.default)
+            for name, field in sensors
+            if name not in _OF_DELAYS
+        ),
     ]

@@ -1,18 +1,17 @@
 """The text of a script that runs a scenario's law on the Robotarium: numpy, ``rps`` and nothing else."""
 
-# Longer than 300 lines: half of them are the script's own text.
-
 from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable
 
-from formation import AngleLaw, agents
+from formation import AngleLaw, agents, decay_rates
 from robots import GTERNAL
 from robots.model import CONTROL_PERIOD
 from robots.safety.certificate import BARRIER_GAIN, BOUNDARY_MARGIN, SAFETY_RADIUS
 from scenarios.definition.experiment import Experiment
 from scenarios.errors import InputError
+from scenarios.export import pieces
 from scenarios.export.portable import start_poses
 
 WIDTH = 79
@@ -45,13 +44,13 @@ def script(experiment: Experiment, seed: int = 0) -> str:
     filtered = experiment.scenario.safety.filter != "none"
     leader, first = (experiment.number(row) for row in (agents.LEADER, agents.FIRST_FOLLOWER))
     renumbered = _renumbered(experiment)
-    return _SCRIPT.format(
+    return pieces.SCRIPT.format(
         introduction=_introduction(experiment, seed),
-        certificate_import=_CERTIFICATE_IMPORT if filtered else "",
+        certificate_import=pieces.CERTIFICATE_IMPORT if filtered else "",
         n=experiment.n,
         whom="those of AGENTS" if renumbered else "agents 1 to N",
         numbers=_numbers(experiment) if renumbered else "",
-        indices=_BY_NUMBER if renumbered else _BY_ROW,
+        indices=pieces.BY_NUMBER if renumbered else pieces.BY_ROW,
         period=CONTROL_PERIOD,
         start=table([repr(value) for value in pose] for pose in poses),
         edges=table(edges),
@@ -61,10 +60,12 @@ def script(experiment: Experiment, seed: int = 0) -> str:
         angles=table(angles),
         ahead=experiment.nid.projection_distance,
         constants=_constants(experiment),
-        first_follower=_FIRST_FOLLOWER[experiment.first_follower].format(number=first),
-        scaling=_SCALING if experiment.scenario.robot.saturation == "scale" else "",
+        first_follower=pieces.FIRST_FOLLOWER[experiment.first_follower].format(number=first),
+        scaling=pieces.SCALING if experiment.scenario.robot.saturation == "scale" else "",
         certificate=_certificate(experiment) if filtered else "",
-        filtering=_FILTERING if filtered else "",
+        filtering=pieces.FILTERING if filtered else "",
+        **_estimation(experiment),
+        **_activation(experiment),
         goal=experiment.goal,
     )
 
@@ -155,12 +156,48 @@ def _constants(experiment: Experiment) -> str:
     )
 
 
+def _estimation(experiment: Experiment) -> dict[str, str]:
+    """The pieces with which agents learn the velocity of all; without, all are told."""
+    estimator = experiment.estimator
+    if estimator is None:
+        return {"estimate": "", "believing": "", "known": ""}
+    place = "ROW[{}]" if _renumbered(experiment) else "{} - 1"
+    return {
+        "estimate": pieces.ESTIMATE.format(
+            hears=table([repr(number) for number in edge] for edge in experiment.numbered(estimator.edges).tolist()),
+            share=repr(estimator.share(CONTROL_PERIOD)),
+            receiver=place.format("receiver"),
+            sender=place.format("sender"),
+            leader=experiment.number(agents.LEADER),
+        ),
+        "believing": pieces.BELIEVING,
+        "known": "    known = np.zeros(N, dtype=complex)\n",
+    }
+
+
+def _activation(experiment: Experiment) -> dict[str, str]:
+    """The pieces with which followers wait for their neighbours, and the velocity of all that is added then."""
+    common = "velocity" if experiment.estimator is None else "known"
+    law = experiment.scenario.law
+    if law.activation != "sequential":
+        return {"added": f" + {common}", "waiting": "", "may_move": "", "slow": "", "settled": ""}
+    gains = 1.0 if experiment.own_gains is None else experiment.own_gains
+    slow = (law.settled_m * gains * decay_rates(experiment.target)).tolist()
+    return {
+        "added": "",
+        "waiting": pieces.WAITING.format(common=common),
+        "may_move": pieces.MAY_MOVE,
+        "slow": pieces.SLOW.format(slow="\n".join(f"    {value!r}," for value in [0.0, 0.0, *slow])),
+        "settled": "    settled = np.arange(N) < 2\n",
+    }
+
+
 def _certificate(experiment: Experiment) -> str:
     # In the place of another filter it also keeps robots on the floor, beyond which its own default boundary lies.
     arena = experiment.arena
     substitute = experiment.scenario.safety.filter != "robotarium"
     margin = 0.0 if substitute else BOUNDARY_MARGIN
-    return _CERTIFICATE.format(
+    return pieces.CERTIFICATE.format(
         why=f"In place of the scenario's {experiment.scenario.safety.filter} filter"
         if substitute
         else "As in the scenario",
@@ -180,157 +217,3 @@ def _numbers(experiment: Experiment) -> str:
     if len(line) > WIDTH:
         line = "AGENTS = [\n" + "".join(f"    {each},\n" for each in experiment.numbers) + "]"
     return f"# The agents' numbers, in the order of START.\n{line}\n\n"
-
-
-_FIRST_FOLLOWER = {
-    "stationary": "",
-    "displacement": "    u[1] = delta - (p[1] - p[0])  # agent {number}, the first follower\n",
-    "distance": (
-        "    e = p[1] - p[0]  # agent {number}, the first follower\n    u[1] = (abs(delta) ** 2 - abs(e) ** 2) * e\n"
-    ),
-    "bearing": (
-        "    b = (p[1] - p[0]) / abs(p[1] - p[0])  # agent {number}, the first follower\n"
-        "    wanted = delta / abs(delta)\n"
-        "    u[1] = wanted - b * (b.conjugate() * wanted).real\n"
-    ),
-}
-
-_BY_ROW = """\
-FOLLOWER, MEASURED = np.array([edge[:2] for edge in EDGES]).T - 1
-GAIN = np.array([edge[2] for edge in EDGES])
-VERTEX, FROM, TO = np.array([angle[:3] for angle in ANGLES]).T - 1
-"""
-
-_BY_NUMBER = """\
-ROW = {agent: row for row, agent in enumerate(AGENTS)}
-FOLLOWER, MEASURED = np.array([[ROW[k] for k in edge[:2]] for edge in EDGES]).T
-GAIN = np.array([edge[2] for edge in EDGES])
-VERTEX, FROM, TO = np.array([[ROW[k] for k in angle[:3]] for angle in ANGLES]).T
-"""
-
-_SCALING = """\
-    # Slow both wheels by one factor: the testbed would clip each by itself,
-    # and so bend the path.
-    wheel_speed = abs(v) + BASE_LENGTH / 2 * abs(omega)
-    scale = WHEEL_SPEED / np.maximum(wheel_speed, WHEEL_SPEED)
-    v, omega = scale * v, scale * omega
-"""
-
-_CERTIFICATE_IMPORT = """\
-from rps.utilities.barrier_certificates import (
-    create_si_barrier_certificate_with_boundary,
-)
-"""
-
-_CERTIFICATE = """\
-    # {why}.
-    certificate = create_si_barrier_certificate_with_boundary(
-        safety_radius={radius},  # m, between two steered points
-        barrier_gain={gain},
-        boundary_points=np.array({boundary}),
-    )
-"""
-
-_FILTERING = """\
-            wish, points = (np.array([z.real, z.imag]) for z in (u, p))
-            vx, vy = certificate(wish, points)
-            u = vx + 1j * vy
-"""
-
-_SCRIPT = '''\
-"""{introduction}
-"""
-
-import numpy as np
-from rps.robotarium import Robotarium
-{certificate_import}
-SHOW_FIGURE = True  # False: no figure, and as fast as the computer can
-
-N = {n}
-PERIOD = {period}  # s, between two commands
-
-{numbers}# Where the axles' centres start: x (m), y (m), heading (rad); {whom}.
-START = [
-{start}
-]
-
-# Follower, agent that it measures, and the law's gain (1/s), eq. (u).
-EDGES = [
-{edges}
-]
-
-# Phase, its length (s), the velocity of all{told}.
-PHASES = [
-{phases}
-]
-
-# Angle at an agent, counter-clockwise from one agent to another; target (rad).
-ANGLES = [
-{angles}
-]
-GOAL = {goal}  # rad, for the sum of all angle errors
-
-AHEAD = {ahead}  # m, from the axle's centre to the point that the law steers
-{constants}
-{indices}TARGET = np.array([angle[3] for angle in ANGLES])
-
-
-def law(p{argument}):
-    """Velocities of the points p, but for the velocity of all."""
-    u = np.zeros(N, dtype=complex)
-    np.add.at(u, FOLLOWER, GAIN * (p[MEASURED] - p[FOLLOWER]))
-{first_follower}    return u
-
-
-def unicycle(u, heading):
-    """The (2, N) v (m/s) and omega (rad/s) that move the points at u."""
-    body = u * heading.conj()
-    v, omega = body.real, body.imag / AHEAD
-{scaling}    return np.array([v, omega])
-
-
-def observe(robots):
-    """The points that the law steers, and the headings as unit vectors."""
-    x, y, theta = robots.get_poses()
-    heading = np.exp(1j * theta)
-    return x + 1j * y + AHEAD * heading, heading
-
-
-def angle_errors(p):
-    """How far each angle is from its target, rad."""
-    turn = (p[TO] - p[VERTEX]) / (p[FROM] - p[VERTEX])
-    return np.angle(turn * np.exp(-1j * TARGET))
-
-
-def main():
-    robots = Robotarium(
-        number_of_robots=N,
-        show_figure=SHOW_FIGURE,
-        sim_in_real_time=SHOW_FIGURE,
-        initial_conditions=np.array(START).T,
-    )
-{certificate}    p, heading = observe(robots)
-    for name, duration, velocity{argument} in PHASES:
-        for _ in range(round(duration / PERIOD)):
-            u = law(p{argument}) + velocity
-{filtering}            robots.set_velocities(np.arange(N), unicycle(u, heading))
-            robots.step()
-            p, heading = observe(robots)
-        total = abs(angle_errors(p)).sum()
-        print(f"{{name}}: the angle errors add up to {{total:.2e}} rad")
-
-    print("angle at (from, to)    target    reached        error")
-    for angle, error in zip(ANGLES, angle_errors(p), strict=True):
-        at, start, end, target = angle
-        degrees = np.degrees([target, (target + error) % (2 * np.pi)])
-        print(
-            f"{{at:5d}} ({{start:4d}}, {{end:4d}})"
-            f" {{degrees[0]:9.2f}}  {{degrees[1]:9.2f}} deg  {{error:+.1e}} rad"
-        )
-    print(f"goal of {{GOAL}} rad: {{'reached' if total < GOAL else 'missed'}}")
-    robots.debug()
-
-
-if __name__ == "__main__":
-    main()
-'''

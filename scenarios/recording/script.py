@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, Literal
 
 import numpy as np
 import rerun as rr
@@ -15,6 +16,7 @@ from robots.rps.simulation import Record
 from robots.testbed import COLLISION_DISTANCE, collision_centres, separation
 from robots.worlds import NOTHING
 from scenarios.measures.script_result import OUTCOMES, describe
+from scenarios.recording.encode import SIDES
 from scenarios.recording.recorder import TIMELINE, Recorder, open_stream
 from scenarios.recording.views import scene, style
 from scenarios.simulation.script.frames import Frames
@@ -24,6 +26,8 @@ Real = NDArray[np.float64]
 
 FIGURE, SUMMARY, EVENTS = "figure", "summary", "events"
 NEAR, WHEELS = "separation", "wheels"
+CLOSEST = "Closest pair (m), limit red"
+NO_LEGEND = rrb.PlotLegend(visible=False)
 FLOOR = Arena(ROBOTARIUM_FLOOR.x, ROBOTARIUM_FLOOR.y, walls=False)
 MARGIN = 0.22
 """Metres of floor around everything that is shown."""
@@ -31,17 +35,45 @@ MARGIN = 0.22
 
 def encode_script(run: ScriptRun) -> bytes:
     """The recording, as the content of an ``.rrd`` file."""
-    result = run.result
-    stream = open_stream(identity(result))
+    blueprint = layout(run.record.poses, bool(run.frames.pictures))
+    return _encoded(identity(run.result), title(run.result), blueprint, [(run, "", style.MEASURED)])
+
+
+def encode_scripts(runs: Sequence[ScriptRun]) -> bytes:
+    """One recording of two runs, side by side, with their closest pairs in shared axes."""
+    sides = [(run, side.root, side.colour) for run, side in zip(runs, SIDES, strict=True)]
+    names = [title(run.result) for run in runs]
+    arenas = [
+        rrb.Vertical(
+            arena(run.record.poses, side.root, f"{side.root}, {side.word}: {name}"),
+            *picture(run.frames.pictures, side.root),
+            notes(side.root),
+            row_shares=[2.2, *([1.6] if run.frames.pictures else []), 1.0],
+        )
+        for run, side, name in zip(runs, SIDES, names, strict=True)
+    ]
+    near = rrb.TimeSeriesView(
+        contents=[f"+ {_path(side.root, NEAR)}/**" for side in SIDES], name=CLOSEST, plot_legend=NO_LEGEND
+    )
+    blueprint = _panels(rrb.Vertical(rrb.Horizontal(*arenas), near, row_shares=[3.0, 1.0]), "playing")
+    return _encoded(" ".join(identity(run.result) for run in runs), " beside ".join(names), blueprint, sides)
+
+
+def _encoded(
+    recording_id: str, name: str, blueprint: rrb.Blueprint, runs: Sequence[tuple[ScriptRun, str, style.Colour]]
+) -> bytes:
+    """Runs, each with the entity below which it goes and the colour of its curves."""
+    stream = open_stream(recording_id)
     memory = stream.memory_recording()
     try:
-        stream.send_recording_name(title(result))
-        stream.send_blueprint(layout(run.record.poses, bool(run.frames.pictures)))
-        recorder = Recorder(stream)
-        send_setup(recorder, run.record.poses.shape[1])
-        send_motion(recorder, run.record)
-        send_frames(recorder, run.frames)
-        _outcome(recorder, run)
+        stream.send_recording_name(name)
+        stream.send_blueprint(blueprint)
+        for run, root, colour in runs:
+            recorder = Recorder(stream, root, colour)
+            send_setup(recorder, run.record.poses.shape[1])
+            send_motion(recorder, run.record)
+            send_frames(recorder, run.frames)
+            _outcome(recorder, run)
         return memory.drain_as_bytes()
     finally:
         stream.disconnect()
@@ -62,7 +94,7 @@ def send_setup(recorder: Recorder, n: int) -> None:
     scene.ground(recorder, FLOOR)
     scene.draw_bodies(recorder, GTERNAL, COLLISION_CENTRE, [str(robot) for robot in range(n)])
     scene.shade_trails(recorder, n)
-    _series(recorder, f"{NEAR}/value", ["closest pair"], [style.MEASURED])
+    _series(recorder, f"{NEAR}/value", ["closest pair"], [recorder.colour])
     _series(recorder, f"{NEAR}/limit", ["testbed's limit"], [style.LIMIT])
     names = [f"{robot} {side}" for robot in range(n) for side in ("left", "right")]
     _series(recorder, f"{WHEELS}/value", names, [style.agent_colour(k // 2) for k in range(2 * n)])
@@ -97,6 +129,17 @@ def send_frames(recorder: Recorder, frames: Frames) -> None:
 
 def layout(poses: Real, figure: bool, live: bool = False) -> rrb.Blueprint:
     """The views of a run of poses (T, n, 3); with room for a figure, where there is one."""
+    plots = [
+        rrb.TimeSeriesView(origin=_path("", entity), name=name, plot_legend=NO_LEGEND)
+        for entity, name in ((NEAR, CLOSEST), (WHEELS, "Wheels as told (rad/s), limits red"))
+    ]
+    right = rrb.Vertical(*picture(figure, ""), *plots, row_shares=[*([2.0] if figure else []), 1.0, 1.0])
+    left = rrb.Vertical(arena(poses, "", "Arena (m)"), notes(""), row_shares=[2.2, 1.0])
+    return _panels(rrb.Horizontal(left, right, column_shares=[1.35, 1.0]), "following" if live else "playing")
+
+
+def arena(poses: Real, root: str, name: str) -> rrb.Spatial2DView:
+    """The floor with all that robots with poses (T, n, 3) come to."""
     seen = poses[..., :2].reshape(-1, 2)
     known = np.concatenate([seen[np.isfinite(seen).all(axis=1)].clip(-4.0, 4.0), FLOOR.corners])
     (x0, y0), (x1, y1) = known.min(axis=0) - MARGIN, known.max(axis=0) + MARGIN
@@ -106,33 +149,40 @@ def layout(poses: Real, figure: bool, live: bool = False) -> rrb.Blueprint:
         end=rrb.TimeRangeBoundary.cursor_relative(),
     )
     still = rrb.EntityBehavior(interactive=False)
-    arena = rrb.Spatial2DView(
+    return rrb.Spatial2DView(
         origin="/",
-        contents=f"+ /{scene.VIEW}/**",
-        name="Arena (m)",
+        contents=f"+ {_path(root, scene.VIEW)}/**",
+        name=name,
         visual_bounds=rrb.VisualBounds2D(x_range=[x0, x1], y_range=[-y1, -y0]),
         background=rrb.Background(color=style.BACKGROUND),
-        overrides={f"/{scene.TRAILS}": trail, **{f"/{entity}": still for entity in scene.BACKDROP}},
+        overrides={_path(root, scene.TRAILS): trail, **{_path(root, entity): still for entity in scene.BACKDROP}},
     )
-    notes = rrb.Tabs(
-        rrb.TextDocumentView(origin=f"/{SUMMARY}", name="Summary"),
-        rrb.TextLogView(origin=f"/{EVENTS}", name="Events"),
+
+
+def notes(root: str) -> rrb.Tabs:
+    """The summary and the events."""
+    return rrb.Tabs(
+        rrb.TextDocumentView(origin=_path(root, SUMMARY), name="Summary"),
+        rrb.TextLogView(origin=_path(root, EVENTS), name="Events"),
         active_tab="Summary",
     )
-    plots = [
-        rrb.TimeSeriesView(origin=f"/{entity}", name=name, plot_legend=rrb.PlotLegend(visible=False))
-        for entity, name in ((NEAR, "Closest pair (m), limit red"), (WHEELS, "Wheels as told (rad/s), limits red"))
-    ]
-    picture = [rrb.Spatial2DView(origin=f"/{FIGURE}", name="The script's figure")] if figure else []
-    right = rrb.Vertical(*picture, *plots, row_shares=[*([2.0] if figure else []), 1.0, 1.0])
-    left = rrb.Vertical(arena, notes, row_shares=[2.2, 1.0])
+
+
+def picture(shown: object, root: str) -> list[rrb.Spatial2DView]:
+    """The script's figure, where there is one."""
+    return [rrb.Spatial2DView(origin=_path(root, FIGURE), name="The script's figure")] if shown else []
+
+
+def _path(root: str, entity: str) -> str:
+    return f"/{root}/{entity}" if root else f"/{entity}"
+
+
+def _panels(views: rrb.Container, play_state: Literal["playing", "following"]) -> rrb.Blueprint:
     return rrb.Blueprint(
-        rrb.Horizontal(left, right, column_shares=[1.35, 1.0]),
+        views,
         rrb.BlueprintPanel(state="hidden"),
         rrb.SelectionPanel(state="hidden"),
-        rrb.TimePanel(
-            state="collapsed", timeline=TIMELINE, play_state="following" if live else "playing", playback_speed=1.0
-        ),
+        rrb.TimePanel(state="collapsed", timeline=TIMELINE, play_state=play_state, playback_speed=1.0),
     )
 
 

@@ -16,16 +16,20 @@ from pathlib import Path
 import numpy as np
 from rich.console import Console
 
+from robots.measured import MEASURED
 from robots.model import CONTROL_PERIOD
 from robots.rps.session import Session
 from robots.testbed import judge
 from scenarios.definition.experiment import Experiment
 from scenarios.export.script import script
+from scenarios.measures.window import trailing
 from scenarios.simulation.script.execute import execute
 from scenarios.simulation.script.script_file import read
 from scenarios.terminal import new_table, print_table
 
 PLANTS = ("saturated", "pymunk")
+MEASURED_ROBOTS = "measured"
+"""Beside the plants: robots as logs and firmware show them, on ``pymunk``."""
 
 
 @dataclass(frozen=True)
@@ -33,9 +37,10 @@ class Arrival:
     """What one run of an exported script gave.
 
     Attributes:
-        plant, seed: of the run.
+        plant, seed: of the run; ``measured`` for robots as logs and firmware show them.
         started: whether the robots came from their chargers to their start.
-        error_sum: of the angles at the end, radians; infinite where they did not start.
+        error_sum: of the angles at the end, radians, infinite where they did not start; of measured robots, which never
+            come to rest, the sum of the mean errors over the last seconds, as in a run.
         reached: whether that is below the scenario's goal.
         accepted: the testbed's verdict on the script's own part.
         kinds: of the violations.
@@ -61,7 +66,7 @@ def check(
     experiment: Experiment,
     seed: int,
     seeds: Sequence[int],
-    plants: Sequence[str] = PLANTS,
+    plants: Sequence[str] = (*PLANTS, MEASURED_ROBOTS),
     advance: Callable[[int, int], None] = lambda done, total: None,
 ) -> list[Arrival]:
     """Run the script that ``export`` writes for the scenario's ``seed``, on each plant with each of ``seeds``.
@@ -83,13 +88,18 @@ def check(
 
 def arrival(experiment: Experiment, path: Path, plant: str, seed: int) -> Arrival:
     """One run of an exported script."""
+    session = Session(plant, "driven")
+    if plant == MEASURED_ROBOTS:
+        model = experiment.measured or MEASURED
+        session = Session("pymunk", "driven", np.random.default_rng(seed), measured=model)
     with contextlib.redirect_stdout(io.StringIO()):
-        ending = execute(read(path, 2), (), Session(plant, "driven"), seed)
+        ending = execute(read(path, 2), (), session, seed)
     if not ending.robots:
         return Arrival(plant, seed, False, float("inf"), False, False, (), 0.0)
     record = ending.robots[-1].record()
-    points = experiment.nid.project(record.poses[-1])
-    error = float(np.abs(experiment.angles.errors(points, experiment.target_angles)).sum())
+    errors = experiment.angles.errors(experiment.nid.project(record.poses), experiment.target_angles)
+    last = trailing(record.t, errors).mean[-1] if plant == MEASURED_ROBOTS else errors[-1]
+    error = float(np.abs(last).sum())
     verdict = judge(record.t, record.poses, record.wheel_speeds)
     kinds = tuple(violation.kind for violation in verdict.violations)
     seconds = CONTROL_PERIOD * (len(record.t) - 1)

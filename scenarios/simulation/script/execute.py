@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import random
 import runpy
 import sys
@@ -12,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Literal, NoReturn
 
 import numpy as np
 
@@ -89,7 +90,7 @@ def execute(
     watched = replace(session, begun=begun, stepped=stepped)
     with _as_python_would(file.path, arguments, seed), serving(file.version, file.path), during(watched):
         try:
-            with clock.in_force():
+            with clock.in_force(), _leaving_in_order():
                 runpy.run_path(str(file.path), run_name="__main__")
                 _wait_for_threads(threads)
         except StopScript:
@@ -139,6 +140,23 @@ def _as_python_would(script: Path, arguments: Sequence[str], seed: int) -> Itera
         for name in set(sys.modules) - modules:
             if str(getattr(sys.modules[name], "__file__", None) or "").startswith(folder):
                 del sys.modules[name]
+
+
+@contextmanager
+def _leaving_in_order() -> Iterator[None]:
+    """``os._exit`` ends the script, as ``exit`` does, and not us; in its threads and processes it is as ever."""
+    leave, process = os._exit, os.getpid()
+
+    def leave_in_order(status: int) -> NoReturn:
+        if os.getpid() == process and threading.current_thread() is threading.main_thread():
+            raise SystemExit(status)
+        leave(status)
+
+    os._exit = leave_in_order
+    try:
+        yield
+    finally:
+        os._exit = leave
 
 
 def _wait_for_threads(before: set[threading.Thread]) -> None:

@@ -22,7 +22,15 @@ from scenarios.export.script import prose, quoted, script
 from scenarios.simulation.loop import simulate
 
 WHOLE_PERIODS = 900 * 0.033
-EXPORTABLE = ("shape", "fastest", "maneuver-testbed", "scale-only", "orientation-only")
+EXPORTABLE = (
+    "shape",
+    "fastest",
+    "maneuver-testbed",
+    "scale-only",
+    "orientation-only",
+    "sequential",
+    "consensus-velocity",
+)
 
 Runner = Callable[[str, str], Robotarium]
 
@@ -92,6 +100,33 @@ def test_every_first_follower_acts_in_the_script_as_in_the_run(
         without="duration_s",
         phases=phases,
         law={"first_follower": first_follower},
+        plant={"name": "saturated"},
+        safety={"filter": "none"},
+    )
+    assert_same_motion(on_testbed(script(experiment, 1), "saturated"), experiment, 1, 1e-7)
+
+
+def test_followers_wait_for_their_neighbours_in_the_script_as_in_the_run(on_testbed: Runner) -> None:
+    changes = ('plant.name="saturated"', 'safety.filter="none"')
+    experiment = open_experiment("sequential", changes, duration=450 * 0.033)
+    started = simulate(experiment, 0).active
+    assert not started[0, 3]
+    assert started[-1, 4]
+    assert_same_motion(on_testbed(script(experiment, 0), "saturated"), experiment, 0, 1e-7)
+
+
+def test_agents_learn_the_velocity_in_the_script_as_in_the_run(
+    on_testbed: Runner, varied: Callable[..., Experiment]
+) -> None:
+    experiment = varied(
+        without="duration_s",
+        phases=[
+            {"name": "up", "duration_s": 3.3, "velocity_m_s": [0.0, 0.02], "displacement_m": [0.4, 0.4]},
+            {"name": "right", "duration_s": 1.65, "velocity_m_s": [0.05, 0.01], "displacement_m": [0.4, -0.4]},
+        ],
+        velocity_known_by="leader",
+        communication={"gain_per_s": 2.0},
+        law={"first_follower": "displacement"},
         plant={"name": "saturated"},
         safety={"filter": "none"},
     )
@@ -181,14 +216,14 @@ def test_quoted_names_read_back(name: str) -> None:
     ("change", "field"),
     [
         ('law.name="displacement"', "law.name"),
-        ('law.activation="sequential"', "law.activation"),
-        ('velocity_known_by="leader"', "velocity_known_by"),
         ("plant.control_period_s=0.02", "plant.control_period_s"),
         ("robot.wheel_speed_limit_rad_s=20.0", "robot.wheel_speed_limit_rad_s"),
         ("sensor.position_noise_m=0.01", "sensor.position_noise_m"),
         ("sensor.bearing_noise_deg=1.0", "sensor.bearing_noise_deg"),
         ("sensor.compass_bias_deg=1.0", "sensor.compass_bias_deg"),
         ("sensor.delay_periods=1", "sensor.delay_periods"),
+        ("sensor.edge_loss=0.1", "sensor.edge_loss"),
+        ("sensor.dropout=0.1", "sensor.dropout"),
         ("arena.x_m=[-3.0, 1.0]", "arena.x_m"),
         ("arena.y_m=[-0.5, 1.5]", "arena.y_m"),
     ],

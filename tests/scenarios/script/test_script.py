@@ -63,6 +63,7 @@ def test_a_script_runs_to_its_end_and_its_folder_has_what_happened(run: Callable
         ("go(5)\n1 / 0\n", 1, "raised", "ZeroDivisionError"),
         ("go(5)\nexit()\n", 0, "exited", "ended itself by exit()"),
         ("go(5)\nexit(3)\n", 1, "exited", "with code 3"),
+        ("import os\ngo(5)\nos._exit(3)\n", 1, "exited", "with code 3"),
         ("go(5)\nraise SystemExit('no goal')\n", 1, "exited", "no goal"),
         ("go(5)\nraise KeyboardInterrupt\n", 130, "interrupted", "was interrupted"),
         ("import threading\nt = threading.Thread(target=go, args=(5,))\nt.start()\n", 0, "ended", "came to its end"),
@@ -228,10 +229,11 @@ def test_a_script_that_asks_for_initialisation_is_told_once_that_it_gets_none(ru
     assert "--drive-to-start" in out
 
 
-def test_replay_plot_and_animate_work_on_the_folder(cli: Cli, tmp_path: Path) -> None:
+def test_replay_alone_and_beside_another_plot_and_animate_work_on_the_folder(cli: Cli, tmp_path: Path) -> None:
     from rerun.chunk import RrdReader
 
     from scenarios.recording.content import recording_of
+    from scenarios.recording.script import encode_scripts
 
     (tmp_path / "mine.py").write_text(HEAD + "r._axes_handle.text(0, 0, 'hi')\ngo(40)\n")
     assert cli("script", "mine.py", "--plant", "saturated", "--out", "run")[0] == 0
@@ -242,6 +244,11 @@ def test_replay_plot_and_animate_work_on_the_folder(cli: Cli, tmp_path: Path) ->
     assert "/arena/world/robots/2" not in entities
     written = (tmp_path / "run" / "recording.rrd").stat().st_size
     assert len(recording_of(tmp_path / "run")) == pytest.approx(written, rel=0.01)
+    pair = tmp_path / "pair.rrd"
+    pair.write_bytes(encode_scripts([script_folder.read(tmp_path / "run")] * 2))
+    entities = {str(chunk.entity_path) for chunk in RrdReader(str(pair)).stream()}
+    for entity in ("arena/world/robots/1", "figure", "summary", "separation/value"):
+        assert {f"/A/{entity}", f"/B/{entity}"} < entities
     code, out, _ = cli("plot", "run", "--format", "svg")
     assert (code, out.strip()) == (0, "run/figure-motion.svg")
     code, out, _ = cli("animate", "run", "--fps", "5")

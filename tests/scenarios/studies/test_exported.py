@@ -19,12 +19,15 @@ agents = [
 """
 
 
-def test_a_check_runs_the_script_on_both_plants_and_says_that_it_arrives(cli: Cli, tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_a_check_runs_the_script_on_both_plants_and_with_measured_robots_and_says_that_it_arrives(
+    cli: Cli, tmp_path
+) -> None:  # type: ignore[no-untyped-def]
     (tmp_path / "three.toml").write_text(THREE.format(duration=25.0))
     code, out, _ = cli("export", "three.toml", "--check", "--runs", "1")
     assert code == 0
-    rows = [line.split() for line in out.splitlines() if line.startswith(("saturated", "pymunk"))]
-    assert [row[:5] for row in rows] == [["saturated", "1", "1", "1", "1"], ["pymunk", "1", "1", "1", "1"]]
+    rows = [line.split() for line in out.splitlines() if line.startswith(("saturated", "pymunk", "measured"))]
+    assert [row[:5] for row in rows] == [[plant, *"1111"] for plant in ("saturated", "pymunk", "measured")]
+    assert float(rows[2][5]) > 1e-4 > float(rows[1][5])  # cameras and wheels of their own
     assert "would run it to its goal" in out
 
 
