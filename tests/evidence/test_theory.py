@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from formation import agents, end_configuration
 from formation.design.candidates import unbeaten
 from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.measures.closed_forms import closed_forms
@@ -167,6 +168,17 @@ def test_of_fifty_robots_no_choice_of_leaders_shortens_the_ways_to_a_quarter_of_
     )
 
 
+def crowding(experiment: Experiment, points: np.ndarray) -> tuple[float, int]:
+    """Metres between leader and first follower, and how many pairs of the places that these two give are too close.
+
+    Where the way of the first follower leads past the leader, the shape shrinks to a crowd on that way. Robots that
+    keep apart have no room there, and may shut the first follower in for ever: what the law asks for is what jams.
+    """
+    places = end_configuration(experiment.formation, *points[: agents.FIRST_ORDINARY])
+    gaps = np.linalg.norm(places[:, None] - places, axis=-1)[np.triu_indices(experiment.n, 1)]
+    return float(np.linalg.norm(points[1] - points[0])), int((gaps < experiment.filter_settings.safe_distance).sum())
+
+
 def test_the_designed_fifty_converge_and_sooner_than_the_shipped_ones(tmp_path: Path) -> None:
     write_scenario(designed(), tmp_path / "designed.toml")
     medians = []
@@ -177,6 +189,11 @@ def test_the_designed_fifty_converge_and_sooner_than_the_shipped_ones(tmp_path: 
             run = simulate(experiment, seed)
             times.append(measure(experiment, run).settling_time)
             contacts += bool((run.contact >= 0).any())
+            if times[-1] is None:
+                apart, crowded = crowding(experiment, run.points[-1])
+                print(
+                    f"seed {seed}: leader and first follower {apart:.3f} m apart, {crowded} pairs of places too close"
+                )
         missed = [seed for seed, each in enumerate(times) if each is None]
         print(f"{Path(name).stem}, pymunk with filter: {told(times)}, {contacts} with contact, never: {missed}")
         medians.append(np.median([np.inf if each is None else each for each in times]))
