@@ -1,9 +1,30 @@
-"""Documents for other programs to show: Markdown tables and JUnit XML, of whatever they are given."""
+"""Documents for other programs to show: Markdown, LaTeX and CSV tables and JUnit XML, of whatever they are given."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
+
+Value = str | float | int | None
+"""What stands in a cell; None for what did not happen."""
+
+
+class Sheet(NamedTuple):
+    """A table before it is written in any form.
+
+    Attributes:
+        columns: their names, units in them.
+        rows: a value for each column.
+    """
+
+    columns: Sequence[str]
+    rows: Sequence[Sequence[Value]]
+
+    @property
+    def numbers(self) -> list[bool]:
+        """Which columns hold no text."""
+        return [not any(isinstance(row[k], str) for row in self.rows) for k in range(len(self.columns))]
 
 
 def cell(value: float | None, form: str, unit: str = "") -> str:
@@ -23,6 +44,75 @@ def markdown_table(columns: Sequence[str], rows: Sequence[Sequence[str]], number
     """
     rule = "---|" * (len(columns) - numbers) + "---:|" * numbers
     return [_line(columns), f"|{rule}", *(_line([text.replace("|", "\\|") for text in row]) for row in rows)]
+
+
+def markdown(sheet: Sheet) -> str:
+    """A sheet for people to read: numbers with four digits."""
+    texts = [[_short(value) for value in row] for row in sheet.rows]
+    texts_first = sheet.numbers.index(True) if True in sheet.numbers else len(sheet.columns)
+    return "\n".join(markdown_table(sheet.columns, texts, len(sheet.columns) - texts_first)) + "\n"
+
+
+def csv(sheet: Sheet) -> str:
+    """A sheet for programs: numbers with all their digits, empty cells for what did not happen."""
+    import csv as package  # the other documents do without
+    from io import StringIO
+
+    text = StringIO()
+    rows = [["" if _missing(value) else value for value in row] for row in sheet.rows]
+    package.writer(text, lineterminator="\n").writerows([sheet.columns, *rows])
+    return text.getvalue()
+
+
+def latex(sheet: Sheet) -> str:
+    """A sheet as a LaTeX tabular in the style of the package booktabs: numbers with four digits, powers of ten set."""
+    align = "".join("r" if number else "l" for number in sheet.numbers)
+    lines = [_latex_line([_escaped(name) for name in sheet.columns])]
+    body = [_latex_line([_in_latex(value) for value in row]) for row in sheet.rows]
+    frame = [
+        rf"\begin{{tabular}}{{{align}}}",
+        r"\toprule",
+        *lines,
+        r"\midrule",
+        *body,
+        r"\bottomrule",
+        r"\end{tabular}",
+    ]
+    return "\n".join([r"% needs \usepackage{booktabs}", *frame]) + "\n"
+
+
+def _missing(value: Value) -> bool:
+    return value is None or (isinstance(value, float) and not math.isfinite(value))
+
+
+def _short(value: Value) -> str:
+    if _missing(value):
+        return "-"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def _in_latex(value: Value) -> str:
+    if isinstance(value, str):
+        return _escaped(value)
+    mantissa, _, power = _short(value).partition("e")
+    if mantissa == "-":
+        return "--"
+    return f"${mantissa}$" if not power else rf"${mantissa} \times 10^{{{int(power)}}}$"
+
+
+LATEX = str.maketrans(
+    {c: "\\" + c for c in "&%$#_{}"}
+    | {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"}
+)
+"""Characters that mean something to LaTeX."""
+
+
+def _escaped(text: str) -> str:
+    return text.translate(LATEX)
+
+
+def _latex_line(cells: Sequence[str]) -> str:
+    return " & ".join(cells) + r" \\"
 
 
 class Case(NamedTuple):

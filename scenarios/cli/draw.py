@@ -1,13 +1,17 @@
-"""Commands that draw a finished run."""
+"""Commands that draw a finished run, and put its numbers into tables."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from scenarios.cli import options
-from scenarios.errors import plain
+from scenarios.errors import InputError, plain
+
+if TYPE_CHECKING:
+    from scenarios.documents import Sheet
 
 
 @click.command()
@@ -65,6 +69,70 @@ def animate(run_folder: Path, form: str, speed: float, fps: float, out: Path | N
     with progress_bar(console, path.name) as advance:
         film(experiment, trajectory, measure(experiment, trajectory), path, speed, fps, advance)
     console.print(plain(str(path)), markup=False)
+
+
+@click.command()
+@click.argument("folders", nargs=-1, required=True, metavar="RUN [RUN]|SWEEP", type=click.Path(path_type=Path))
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["markdown", "latex", "csv", "parquet"]),
+    default="markdown",
+    show_default=True,
+)
+@click.option("--series", is_flag=True, help="Of one run: a row per control period, units in the names.")
+@click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Write to this file instead of printing.")
+def table(folders: tuple[Path, ...], form: str, series: bool, out: Path | None) -> None:
+    """The numbers of a run, of two runs with their differences, or of a sweep, as a table.
+
+    Markdown and LaTeX have four digits; CSV and Parquet, which needs the extra `notebook`, have all.
+    """
+    from scenarios import documents
+    from scenarios.storage.files import write_whole
+
+    if form == "parquet" and out is None:
+        raise InputError("--format parquet: needs --out, a terminal cannot show it")
+    sheet = _sheet(folders, series)
+    if form == "parquet":
+        from scenarios.interactive.frames import parquet
+
+        content = parquet(sheet)
+    else:
+        content = {"markdown": documents.markdown, "latex": documents.latex, "csv": documents.csv}[form](sheet).encode()
+    if out is None:
+        click.echo(content.decode(), nl=False)
+    else:
+        write_whole(out, content, "--out")
+
+
+def _sheet(folders: tuple[Path, ...], series: bool) -> Sheet:
+    """What the folders hold, in rows and columns."""
+    from scenarios.documents import Sheet
+    from scenarios.measures.metrics import measure
+    from scenarios.measures.result import result
+    from scenarios.measures.series import series as over_time
+    from scenarios.report.numbers import side_by_side
+    from scenarios.storage.run_folder import read
+    from scenarios.studies.sweep.sheet import is_sweep
+    from scenarios.studies.sweep.sheet import sheet as of_sweep
+
+    if len(folders) > 2:
+        raise InputError(f"table: expected one run folder, two, or a sweep's, got {len(folders)}")
+    if series and (len(folders) > 1 or is_sweep(folders[0])):
+        raise InputError("--series: expected one run folder")
+    if len(folders) == 1 and is_sweep(folders[0]):
+        return of_sweep(folders[0])
+    runs = [read(folder) for folder in folders]
+    measured = [measure(run.experiment, run.trajectory) for run in runs]
+    if series:
+        columns = over_time(runs[0].experiment, runs[0].trajectory, measured[0])
+        return Sheet(list(columns), list(zip(*(values.tolist() for values in columns.values()), strict=True)))
+    results = [
+        result(run.experiment, run.result["seed"], run.trajectory, metrics)
+        for run, metrics in zip(runs, measured, strict=True)
+    ]
+    names = [folder.resolve().name for folder in folders]
+    return side_by_side(names if len(set(names)) == len(names) else [str(folder) for folder in folders], results)
 
 
 def _plot_script(run_folder: Path, out: Path | None, formats: tuple[str, ...]) -> None:

@@ -19,7 +19,7 @@ from scenarios.errors import InputError, did_you_mean, plain
 FAMILIES: tuple[tuple[click.Command, ...], ...] = (
     (look.list_command, look.show, look.keys),
     (run.run, run.replay),
-    (draw.plot, draw.animate),
+    (draw.plot, draw.animate, draw.table),
     (many.sweep_command, many.check),
     (study.laws, study.audit, study.reproduce),
     (design.design,),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from scenarios.documents import Sheet
 from scenarios.errors import InputError
 
 
@@ -20,3 +21,13 @@ def pandas() -> Any:
             f"tables need the package pandas, the extra 'notebook' of angle-formation ({error})"
         ) from error
     return package
+
+
+def parquet(sheet: Sheet) -> bytes:
+    """A sheet as a Parquet file.
+
+    Raises:
+        InputError: pandas is missing.
+    """
+    content: bytes = pandas().DataFrame(sheet.rows, columns=list(sheet.columns)).to_parquet()
+    return content

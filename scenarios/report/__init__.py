@@ -1,3 +1,13 @@
 """What a person reads of scenarios, one experiment or one run. Runs nothing; studies print their own."""
 
-__all__ = ["catalogue", "cells", "closed_forms", "course", "experiment", "happenings", "result", "script_printout"]
+__all__ = [
+    "catalogue",
+    "cells",
+    "closed_forms",
+    "course",
+    "experiment",
+    "happenings",
+    "numbers",
+    "result",
+    "script_printout",
+]

@@ -1,0 +1,61 @@
+"""A finished sweep as a sheet: a row per combination of the varied values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import groupby
+from pathlib import Path
+
+from scenarios.documents import Sheet, Value
+from scenarios.errors import InputError
+from scenarios.studies.sweep.folder import ROWS, read_rows
+from scenarios.studies.sweep.row import RUN_COLUMNS, columns
+from scenarios.studies.sweep.summary import QUANTILES, QUANTITIES, summarise
+
+SHOWN = (0.05, 0.5, 0.95)
+"""Quantiles that have a column."""
+
+
+def is_sweep(folder: Path) -> bool:
+    """Whether ``folder`` holds a finished sweep."""
+    return (folder / ROWS).is_file()
+
+
+def sheet(folder: Path) -> Sheet:
+    """The varied values, the number of runs, shares with 95 % intervals, and quantiles of what was measured.
+
+    Raises:
+        InputError: ``rows.csv`` is not a sweep's.
+    """
+    try:
+        return _sheet(read_rows(folder))
+    except (ValueError, KeyError, TypeError, IndexError) as error:  # what csv and float make of a damaged file
+        raise InputError(f"{folder / ROWS}: not the rows of a sweep, damaged or edited") from error
+
+
+def _sheet(rows: Iterator[Mapping[str, str]]) -> Sheet:
+    lines: list[list[Value]] = []
+    known: dict[str, str] = {}
+    for _, group in groupby(rows, key=lambda row: tuple(_combination(row).values())):
+        own = list(group)
+        known = _combination(own[0])
+        told = summarise(iter(own), len(own))
+        line: list[Value] = [*known.values(), told.runs]
+        for share in (told.converged, told.accepted):
+            line += [share.share, share.low, share.high]
+        for column in QUANTITIES:
+            values = told.quantiles[column]
+            line += [None if values is None else values[QUANTILES.index(level)] for level in SHOWN]
+        lines.append(line)
+    if not lines:
+        raise ValueError("no rows")
+    shares = [f"{name}{end}" for name in ("converged", "accepted") for end in ("", ".low", ".high")]
+    quantiles = [f"{column}.q{level * 100:02.0f}" for column in QUANTITIES for level in SHOWN]
+    return Sheet([*known, "runs", *shares, *quantiles], lines)
+
+
+def _combination(row: Mapping[str, str]) -> dict[str, str]:
+    """What all runs of one combination share: all that tells a run but its seed; the plant once, where it is varied."""
+    names = list(row)[: len(row) - len(columns([])) + RUN_COLUMNS]
+    without = {"seed", "plant" if "plant.name" in names else "seed"}
+    return {name: row[name] for name in names if name not in without}
