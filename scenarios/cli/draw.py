@@ -72,7 +72,10 @@ def animate(run_folder: Path, form: str, speed: float, fps: float, out: Path | N
 
 
 @click.command()
-@click.argument("folders", nargs=-1, required=True, metavar="RUN [RUN]|SWEEP", type=click.Path(path_type=Path))
+@click.argument(
+    "folders", nargs=-1, required=True, metavar="RUN [RUN]|SWEEP", type=click.Path(path_type=Path),
+    shell_complete=options.complete_run,
+)  # fmt: skip
 @click.option(
     "--format",
     "form",

@@ -18,7 +18,10 @@ from scenarios.errors import InputError
 @options.safety("none, decentralised, centralised or robotarium.")
 @options.duration
 @options.changes
-@click.option("--vary", "varied", multiple=True, metavar="KEY=V1,V2,...", help="Run with each of these values.")
+@click.option(
+    "--vary", "varied", multiple=True, metavar="KEY=V1,V2,...", help="Run with each of these values.",
+    shell_complete=options.complete_key,
+)  # fmt: skip
 @options.workers
 @click.option("--scheduler", metavar="ADDRESS", help="A running dask scheduler's, tcp://host:port, in their place.")
 @options.out("[default: runs/sweep-SCENARIO-PLANT-seedsA-B]")
@@ -61,7 +64,7 @@ def sweep_command(
 
 
 @click.command()
-@click.argument("scenarios", nargs=-1, metavar="[SCENARIO ...]")
+@click.argument("scenarios", nargs=-1, metavar="[SCENARIO ...]", shell_complete=options.complete_scenario)
 @click.option("--baselines", type=click.Path(path_type=Path), help="Their folder.  [default: the library's]")
 @click.option("--portable", is_flag=True, help="Allow the spread between machines on the baselines' own machine too.")
 @click.option("--junit", type=click.Path(path_type=Path, dir_okay=False), help="Write a JUnit XML report.")

@@ -2,19 +2,71 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, get_args
 
 import click
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
 
 Option = Callable[[Any], Any]
 """Decorates the function of a command."""
 
-scenario = click.argument("scenario")
-run_folder = click.argument("run_folder", metavar="RUN", type=click.Path(path_type=Path))
-changes = click.option("--set", "changes", multiple=True, metavar="KEY=VALUE", help="Change a key of the scenario.")
-plant = click.option("--plant", metavar="P", help="single_integrator, unicycle, saturated or pymunk.")
+
+def completed(names: Callable[[], Iterator[str]], otherwise: str = "plain") -> Callable[..., list[CompletionItem]]:
+    """What the shell offers behind the begin of a word: names, or where none fits, files (``file``, ``dir``)."""
+
+    def complete(_ctx: click.Context, _param: click.Parameter, begin: str) -> list[CompletionItem]:
+        from click.shell_completion import CompletionItem
+
+        fitting = [CompletionItem(name) for name in names() if name.startswith(begin)]
+        return fitting or [CompletionItem(begin, type=otherwise)]
+
+    return complete
+
+
+def _library() -> Iterator[str]:
+    from scenarios.definition.load import library  # loads pydantic
+
+    yield from library()
+
+
+def _plants() -> Iterator[str]:
+    from scenarios.definition.schema import PlantTable
+
+    yield from get_args(PlantTable.model_fields["name"].annotation)
+
+
+def _keys() -> Iterator[str]:
+    from scenarios.definition.keys import keys
+
+    yield from (f"{key.name}=" for key in keys() if "[]" not in key.name)
+
+
+def _runs() -> Iterator[str]:
+    """The finished runs below ``runs``, newest first."""
+    from scenarios.storage.run_folder import RESULT
+
+    results = sorted(Path("runs").glob(f"*/{RESULT}"), key=lambda path: path.stat().st_mtime, reverse=True)
+    yield from (str(path.parent) for path in results)
+
+
+complete_scenario = completed(_library, "file")
+complete_run = completed(_runs, "dir")
+complete_plant = completed(_plants)
+complete_key = completed(_keys)
+
+scenario = click.argument("scenario", shell_complete=complete_scenario)
+run_folder = click.argument("run_folder", metavar="RUN", type=click.Path(path_type=Path), shell_complete=complete_run)
+changes = click.option(
+    "--set", "changes", multiple=True, metavar="KEY=VALUE", help="Change a key of the scenario.",
+    shell_complete=complete_key,
+)  # fmt: skip
+plant = click.option(
+    "--plant", metavar="P", help="single_integrator, unicycle, saturated or pymunk.", shell_complete=complete_plant
+)
 duration = click.option("--duration", type=float, metavar="S", help="Seconds to run instead of the scenario's own.")
 workers = click.option("--workers", type=click.IntRange(min=1), help="Processes.  [default: one per processor]")
 

@@ -70,7 +70,10 @@ def run(
 
 
 @click.command()
-@click.argument("runs", nargs=-1, required=True, metavar="RUN [RUN]", type=click.Path(path_type=Path))
+@click.argument(
+    "runs", nargs=-1, required=True, metavar="RUN [RUN]", type=click.Path(path_type=Path),
+    shell_complete=options.complete_run,
+)  # fmt: skip
 @click.option("--web", is_flag=True, help="In the browser; served to this machine alone.")
 def replay(runs: tuple[Path, ...], web: bool) -> None:
     """Open the recording of a run, or of two runs beside each other, in the viewer."""
