@@ -1,12 +1,39 @@
-"""The command that chooses whom each robot senses."""
+"""Commands that make scenario files: one to begin with, and one that is designed."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import click
 
 from scenarios.cli import options
+from scenarios.errors import InputError
+
+
+@click.command()
+@click.argument("name")
+@click.option("--law", is_flag=True, help="With a law of one's own, in a second file.")
+def new(name: str, law: bool) -> None:
+    """Write NAME.toml, a commented scenario of four robots to change, which runs as it is."""
+    from scenarios.definition.files import starter
+    from scenarios.definition.load import LIBRARY
+    from scenarios.storage.files import write_whole
+
+    name = name.removesuffix(".toml")
+    if re.fullmatch(r"[A-Za-z0-9][\w-]*", name, re.ASCII) is None:
+        raise InputError(f"new: expected a name of letters, digits, - and _, got {name[:40]!r}")
+    law_file = f"{name.replace('-', '_')}_law.py" if law else None
+    content = {Path(f"{name}.toml"): starter.scenario(name, law_file).encode()}
+    if law_file is not None:
+        content[Path(law_file)] = (LIBRARY / "bounded_angle_law.py").read_bytes()
+    for path in content:
+        if path.exists():
+            raise InputError(f"new: {path} exists; take another name")
+    for path, text in content.items():
+        write_whole(path, text)
+        click.echo(path)
+    click.echo(f"run it: formation run {name}.toml")
 
 
 @click.command("design")
@@ -41,7 +68,6 @@ def design(
 
     Prints the candidates side by side, and writes a scenario with the best of them.
     """
-    from scenarios.errors import InputError
     from scenarios.studies import design as designing
     from scenarios.terminal import new_console
 

@@ -22,7 +22,7 @@ FAMILIES: tuple[tuple[click.Command, ...], ...] = (
     (draw.plot, draw.animate, draw.table),
     (many.sweep_command, many.check),
     (study.laws, study.audit, study.reproduce),
-    (design.design,),
+    (design.new, design.design),
     (export.export,),
     (script.script,),
     (testbed.identify, testbed.adopt, testbed.ladder_command, testbed.calibrate, testbed.testbed_page),

@@ -1,6 +1,6 @@
 """Files that a scenario is made of, read only where they are what they should be: text, laws, robots, way-points.
 
-What they mean is not decided here.
+Beside them the text of one to begin with. What they mean is not decided here.
 """
 
-__all__ = ["law_file", "reading", "robot_file", "way_function", "way_points"]
+__all__ = ["law_file", "reading", "robot_file", "starter", "way_function", "way_points"]
