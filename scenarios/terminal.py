@@ -36,9 +36,9 @@ WIDEST = 1000
 """Characters of a line, at most."""
 
 
-def new_console() -> Console:
-    """The terminal; where there is none, wide enough for every table."""
-    return Console(highlight=False, soft_wrap=True, width=shutil.get_terminal_size((160, 25)).columns)
+def new_console(stderr: bool = False) -> Console:
+    """The terminal; where there is none, wide enough for every table. ``stderr`` leaves the output to programs."""
+    return Console(highlight=False, soft_wrap=True, width=shutil.get_terminal_size((160, 25)).columns, stderr=stderr)
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import click
@@ -10,12 +11,16 @@ from scenarios.cli import options
 
 
 @click.command("list")
-def list_command() -> None:
+@options.as_json
+def list_command(as_json: bool) -> None:
     """What scenarios there are."""
-    from scenarios.report.catalogue import print_library
+    from scenarios.report.catalogue import describe_library, print_library
     from scenarios.terminal import new_console
 
-    print_library(new_console())
+    if as_json:
+        click.echo(json.dumps(describe_library(), indent=2))
+    else:
+        print_library(new_console())
 
 
 @click.command()

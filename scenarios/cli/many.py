@@ -26,6 +26,7 @@ from scenarios.errors import InputError
 @click.option("--scheduler", metavar="ADDRESS", help="A running dask scheduler's, tcp://host:port, in their place.")
 @options.out("[default: runs/sweep-SCENARIO-PLANT-seedsA-B]")
 @click.option("--restart", is_flag=True, help="Make all rows anew, where some are there already.")
+@options.as_json
 def sweep_command(
     scenario: str,
     seeds: str,
@@ -38,6 +39,7 @@ def sweep_command(
     scheduler: str | None,
     out: Path | None,
     restart: bool,
+    as_json: bool,
 ) -> None:
     """Run SCENARIO (a name or a file) with many seeds: one row per run, and a summary.
 
@@ -46,6 +48,7 @@ def sweep_command(
     """
     from scenarios.definition.load import changed
     from scenarios.studies.project import PROJECT
+    from scenarios.studies.sweep.folder import SUMMARY
     from scenarios.studies.sweep.seeds import parse_seeds
     from scenarios.studies.sweep.study import open_study
     from scenarios.studies.sweep.sweep import sweep
@@ -55,12 +58,14 @@ def sweep_command(
     from scenarios.work.spread import spread
 
     changes = changed(changes, plant, safety)
-    console = new_console()
+    console = new_console(stderr=as_json)
     variations = parse_variations(varied, changes)
     study = open_study(scenario, changes, variations, parse_seeds(seeds), duration, safety)
     with spread(workers, scheduler, PROJECT) as run_all, progress_bar(console, "sweep") as advance:
         swept = sweep(study, out, run_all, advance, restart)
     print_sweep(console, study, swept)
+    if as_json:
+        click.echo((swept.folder / SUMMARY).read_text(encoding="utf-8"), nl=False)
 
 
 @click.command()

@@ -70,6 +70,8 @@ plant = click.option(
 duration = click.option("--duration", type=float, metavar="S", help="Seconds to run instead of the scenario's own.")
 workers = click.option("--workers", type=click.IntRange(min=1), help="Processes.  [default: one per processor]")
 
+as_json = click.option("--json", "as_json", is_flag=True, help="Print JSON instead, for programs.")
+
 
 def seed(of: str) -> Option:
     """The seed of one run; ``of`` says of what."""

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 @click.option("--recording/--no-recording", "recorded", default=True, help="Whether to write recording.rrd.")
 @click.option("--live", is_flag=True, help="Watch the run in a viewer, one that is open or a new one.")
 @click.option("--speed", type=float, help="With --live: simulated s per s.  [default: 1]")
+@options.as_json
 def run(
     scenario: str,
     seed: int | None,
@@ -40,6 +41,7 @@ def run(
     recorded: bool,
     live: bool,
     speed: float | None,
+    as_json: bool,
 ) -> None:
     """Run SCENARIO (a name or a file), print its result and write its run folder.
 
@@ -49,7 +51,7 @@ def run(
     from scenarios.definition.experiment import open_experiment, require_safety
     from scenarios.definition.load import changed
     from scenarios.one_run import run_to_folder
-    from scenarios.storage import again
+    from scenarios.storage import again, run_folder
     from scenarios.terminal import new_console
 
     if scenario.endswith(".py"):
@@ -57,7 +59,7 @@ def run(
     changes = changed(changes, plant, safety)
     if again.is_recorded(scenario):
         experiment, seed_before = again.open_again(scenario, changes, duration)
-        click.echo(plain(again.notice(scenario, seed_before, seed, changes, duration)))
+        click.echo(plain(again.notice(scenario, seed_before, seed, changes, duration)), err=as_json)
         seed = seed_before if seed is None else seed
     else:
         experiment = open_experiment(scenario, changes, duration)
@@ -65,7 +67,11 @@ def run(
     if start_from is not None:
         experiment = again.begin_where(experiment, start_from)
     require_safety(experiment, safety)
-    if not run_to_folder(experiment, seed, out, new_console(), recorded, _live(live, speed)):
+    folder = out or run_folder.default_path(experiment.file.name, experiment.plant, seed)
+    reached = run_to_folder(experiment, seed, folder, new_console(stderr=as_json), recorded, _live(live, speed))
+    if as_json:
+        click.echo((folder / run_folder.RESULT).read_text(encoding="utf-8"), nl=False)
+    if not reached:
         raise SystemExit(MISSED)
 
 

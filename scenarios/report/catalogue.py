@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from rich.console import Console
 from rich.markup import escape
 
@@ -11,13 +13,23 @@ from scenarios.definition.schema import Scenario
 from scenarios.terminal import new_table, print_table
 
 
-def print_library(console: Console) -> None:
-    """The scenarios that come with the project."""
-    table = new_table("scenario", "agents", "time (s)", "plant", "title")
+def describe_library() -> list[dict[str, Any]]:
+    """The scenarios that come with the project, each with what tells it from the others."""
+    described = []
     for name in library():
         s = load(name).scenario
         seconds = s.duration_s or sum(phase.duration_s for phase in s.phases)
-        table.add_row(name, str(_agents(s)), f"{seconds:g}", s.plant.name, escape(s.title))
+        described.append(
+            {"scenario": name, "agents": _agents(s), "duration_s": seconds, "plant": s.plant.name, "title": s.title}
+        )
+    return described
+
+
+def print_library(console: Console) -> None:
+    """The scenarios that come with the project."""
+    table = new_table("scenario", "agents", "time (s)", "plant", "title")
+    for s in describe_library():
+        table.add_row(s["scenario"], str(s["agents"]), f"{s['duration_s']:g}", s["plant"], escape(s["title"]))
     print_table(console, table)
 
 
