@@ -22,8 +22,13 @@ if TYPE_CHECKING:
     show_default=True, help="May be given several times.",
 )  # fmt: skip
 def plot(run_folder: Path, out: Path | None, formats: tuple[str, ...]) -> None:
-    """Draw the paper's figures of RUN, the folder of a finished run; of a script's run, its overview."""
+    """Draw the paper's figures of RUN, a finished run's folder; of a script's, its overview; of a sweep's, its runs."""
     from scenarios.storage import script_folder
+    from scenarios.studies.sweep.sheet import is_sweep
+
+    if is_sweep(run_folder):
+        _plot_sweep(run_folder, out or run_folder, formats)
+        return
 
     if script_folder.is_script(run_folder):
         _plot_script(run_folder, out, formats)
@@ -136,6 +141,22 @@ def _sheet(folders: tuple[Path, ...], series: bool) -> Sheet:
     ]
     names = [folder.resolve().name for folder in folders]
     return side_by_side(names if len(set(names)) == len(names) else [str(folder) for folder in folders], results)
+
+
+def _plot_sweep(folder: Path, out: Path, formats: tuple[str, ...]) -> None:
+    from scenarios.figures.studies.dependence import dependence
+    from scenarios.figures.style import render
+    from scenarios.storage.files import write_whole
+    from scenarios.studies.sweep.sheet import groups
+    from scenarios.terminal import new_console
+
+    found = groups(folder)
+    figure = dependence(found.key, found.labels, found.shares, found.values)
+    console = new_console()
+    for form in formats:
+        path = out / f"figure-sweep.{form}"
+        write_whole(path, render(figure, form))
+        console.print(plain(str(path)), markup=False)
 
 
 def _plot_script(run_folder: Path, out: Path | None, formats: tuple[str, ...]) -> None:

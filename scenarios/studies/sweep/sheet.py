@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
 
 from scenarios.documents import Sheet, Value
 from scenarios.errors import InputError
@@ -27,9 +32,56 @@ def sheet(folder: Path) -> Sheet:
     Raises:
         InputError: ``rows.csv`` is not a sweep's.
     """
-    try:
+    with _told(folder):
         return _sheet(read_rows(folder))
-    except (ValueError, KeyError, TypeError, IndexError) as error:  # what csv and float make of a damaged file
+
+
+@dataclass(frozen=True)
+class Groups:
+    """The runs of a sweep by combination, for a figure.
+
+    Attributes:
+        key: what is varied, keys joined by commas; empty where nothing is.
+        labels: the varied values of each combination.
+        shares: (combinations, 3) share that converged, with its 95 % interval.
+        values: by column, for each combination what its runs have.
+    """
+
+    key: str
+    labels: list[str]
+    shares: NDArray[np.float64]
+    values: dict[str, list[NDArray[np.float64]]]
+
+
+def groups(folder: Path) -> Groups:
+    """The runs of a finished sweep by combination.
+
+    Raises:
+        InputError: ``rows.csv`` is not a sweep's.
+    """
+    with _told(folder):
+        gathered = [
+            list(group) for _, group in groupby(read_rows(folder), key=lambda r: tuple(_combination(r).values()))
+        ]
+        varied = [name for name in _combination(gathered[0][0]) if name not in ("scenario", "plant")]
+        shares = [summarise(iter(own), len(own)).converged for own in gathered]
+        return Groups(
+            ", ".join(varied),
+            [", ".join(own[0][name] for name in varied) for own in gathered],
+            np.array([(share.share, share.low, share.high) for share in shares]),
+            {
+                column: [np.array([float(row[column]) for row in own if row[column]]) for own in gathered]
+                for column in QUANTITIES
+            },
+        )
+
+
+@contextmanager
+def _told(folder: Path) -> Iterator[None]:
+    """One line for what csv and float make of a damaged file."""
+    try:
+        yield
+    except (ValueError, KeyError, TypeError, IndexError) as error:
         raise InputError(f"{folder / ROWS}: not the rows of a sweep, damaged or edited") from error
 
 
