@@ -37,6 +37,8 @@ PICTURES = {
     "shape": {"start": 0.0, "middle": 5.0, "end": 60.0},
     "maneuver": {"start": 0.0, "middle": 60.0, "end": 120.0},
     "pair": {"middle": 55.0},
+    "obstacles": {"middle": 5.0},
+    "crowd": {"middle": 20.0},
 }
 """Recordings, and the times at which each has its picture taken, seconds."""
 
@@ -65,20 +67,22 @@ def main() -> None:
                     picture = folder / "picture.png"
                     client.save_screenshot(str(picture))
                     keep(picture, f"recording-{name}-{moment}.png")
-            if name != "pair":
+            if name in ("shape", "maneuver"):
                 browse(name, path, folder, environment)
 
 
 def recordings(folder: Path) -> dict[str, Path]:
-    """A shape run, a maneuver, and the maneuver with and without safety filter beside each other."""
+    """A shape run, a maneuver, and it with and without safety filter beside each other; obstacles, and fifty robots."""
     for name, scenario, changes in (
         ("shape", "shape", ()),
         ("maneuver", "maneuver", ()),
         ("literal", "maneuver", ("safety.filter=none",)),
+        ("obstacles", "obstacles", ()),
+        ("crowd", "random-50", ()),
     ):
         run_to_folder(open_experiment(scenario, changes), 0, folder / name, Console(quiet=True))
     write(folder / "pair.rrd", encode_pair([run_folder.read(folder / name) for name in ("maneuver", "literal")]))
-    single = {name: folder / name / run_folder.RECORDING for name in ("shape", "maneuver")}
+    single = {name: folder / name / run_folder.RECORDING for name in ("shape", "maneuver", "obstacles", "crowd")}
     return single | {"pair": folder / "pair.rrd"}
 
 

@@ -145,6 +145,8 @@ def recorded() -> Callable[..., Trajectory]:
             "relaxation": np.zeros(robots),
             "blockers": np.full((*robots, 3), -1, dtype=np.int32),
             "stuck": np.zeros(robots),
+            "wish": np.zeros((*robots, 2)),
+            "command": np.zeros((*robots, 2)),
         }
         return Trajectory(t=t, poses=poses, points=points, **(nothing | states))
 

@@ -18,6 +18,13 @@ Real = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 
+FRAME = 0.2
+"""Seconds between two pictures of what is drawn less often than measured."""
+
+STILL = 1e-4
+"""Metres in a control period up to which an agent stands still in its formation to the eye."""
+
+
 @dataclass(frozen=True, eq=False)
 class Piece:
     """Consecutive control periods of a run, with what is measured of each.
@@ -52,6 +59,15 @@ class Piece:
         differs = values[1:] != values[:-1]
         rows = np.flatnonzero(differs.reshape(len(differs), -1).any(axis=1)) + 1
         return np.concatenate([[0], rows]).astype(np.intp) if self.t[0] == 0.0 else rows
+
+    def frames(self) -> Index:
+        """Rows for what is drawn less often than measured: five a second while the formation changes, else one."""
+        rows = self.changes(np.floor(self.t / FRAME + 1e-9))
+        within = self.trajectory.points - self.trajectory.points.mean(axis=1, keepdims=True)
+        moved = np.abs(np.diff(within, axis=0, prepend=within[:1]))
+        moves = moved.max(axis=(1, 2)) > STILL
+        second = np.isin(rows, self.changes(np.floor(self.t + 1e-9)))
+        return rows[moves[rows] | second]
 
 
 def whole(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> Piece:

@@ -8,15 +8,19 @@ from typing import Any
 from scenarios.definition.experiment import Experiment
 from scenarios.recording.piece import Piece
 from scenarios.recording.recorder import Recorder
-from scenarios.recording.views import happenings, plots, scene, summary, timeline
+from scenarios.recording.views import angles, filtering, happenings, legend, obstacles, plots, scene, summary, timeline
 
 SETUP: tuple[Callable[[Recorder, Experiment], None], ...] = (
     scene.floor,
-    scene.obstacles,
+    obstacles.outlines,
     scene.bodies,
     scene.sensing_style,
     scene.trails_style,
     scene.prediction_style,
+    filtering.circles,
+    filtering.velocities_style,
+    angles.arcs_style,
+    legend.page,
     plots.styles,
     timeline.styles,
 )
@@ -27,6 +31,9 @@ MOTION: tuple[Callable[[Recorder, Piece], None], ...] = (
     scene.sensing,
     scene.trails,
     scene.prediction,
+    scene.camera,
+    filtering.velocities,
+    angles.arcs,
     plots.angle_errors,
     plots.error_sum,
     plots.wheel_speeds,

@@ -30,6 +30,8 @@ class Controller:
     Attributes:
         active: (..., n) which agents follow the law; the others hold still but for v_r.
         guard: the safety filter; None without one.
+        wish: (..., n, 2) what the law and v_r asked for last, in body frames, m/s.
+        command: (..., n, 2) the same after the safety filter.
     """
 
     def __init__(self, experiment: Experiment, generators: Sequence[np.random.Generator], batch: tuple[int, ...]):
@@ -61,6 +63,7 @@ class Controller:
         self._compass_error = self._draw_compass(np.radians(table.compass_bias_deg), experiment.n)
         self._activation = None
         self.active = np.ones((*batch, experiment.n), dtype=bool)
+        self.wish = self.command = np.zeros((*batch, experiment.n, 2))
         if scenario.law.activation == "sequential":
             self._activation = self._sequence(experiment)
             self.active = self._activation.active
@@ -137,10 +140,13 @@ class Controller:
         if self._activation is not None:
             feedback *= self.active[..., None]
         if self._velocity is None:
-            return feedback if self.guard is None else self.guard(sensed, feedback, np.zeros_like(feedback))
-        velocity = np.ascontiguousarray(self._velocity).view(np.complex128)
-        common = (velocity * self._compass(sensed.headings)).view(np.float64)
-        return feedback + common if self.guard is None else self.guard(sensed, feedback, common)
+            common, self.wish = np.zeros_like(feedback), feedback
+        else:
+            velocity = np.ascontiguousarray(self._velocity).view(np.complex128)
+            common = (velocity * self._compass(sensed.headings)).view(np.float64)
+            self.wish = feedback + common
+        self.command = self.wish if self.guard is None else self.guard(sensed, feedback, common)
+        return self.command
 
     def _take_reference(self, elapsed: float) -> None:
         """What agents are told so many seconds into the period, where that changes during a phase."""

@@ -63,6 +63,7 @@ def simulate(
     poses = np.empty((total + 1, *world.poses.shape))
     points = np.empty((total + 1, *world.points.shape))
     wheel_speeds = np.empty_like(points)
+    wish, command = np.zeros_like(points), np.zeros_like(points)
     phase_index = np.zeros(total + 1, dtype=np.intp)
     contact = np.full(points.shape[:-1], NOTHING)
     active = np.empty((total + 1, *controller.active.shape), dtype=bool)
@@ -81,6 +82,8 @@ def simulate(
         safety.relaxation,
         safety.blockers,
         safety.stuck,
+        wish,
+        command,
     )
     done = 0
     for part in parts:
@@ -96,6 +99,7 @@ def simulate(
             t[done] = part.start + part.duration * (step / part.count)
             poses[done], points[done], wheel_speeds[done] = world.poses, world.points, world.wheel_speeds
             phase_index[done], contact[done], active[done] = index, world.contacts, controller.active
+            wish[done], command[done] = controller.wish, controller.command
             safety.take(done)
             if on_period is not None:
                 on_period(done, total)

@@ -30,6 +30,9 @@ class Trajectory:
         relaxation: (T, ..., n) by how much the rows of an infeasible problem were lowered, m/s.
         blockers: (T, ..., n, 3) whose rows those were; see :class:`robots.safety.SafetyFilter`.
         stuck: (T, ..., n) for how long an agent has made no progress, seconds.
+        wish: (T, ..., n, 2) what the law and v_r ask for during the period that ends at t, in each robot's own frame at
+            its beginning, m/s; 0 in row 0.
+        command: (T, ..., n, 2) the same after the safety filter, before the wheels' limits.
     """
 
     t: Real
@@ -43,6 +46,8 @@ class Trajectory:
     relaxation: Real
     blockers: NDArray[np.int32]
     stuck: Real
+    wish: Real
+    command: Real
 
     def run(self, index: int) -> Trajectory:
         """One run of a batch with one batch dimension."""

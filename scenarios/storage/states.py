@@ -27,6 +27,9 @@ SAME_PLACE = 1e-9
 
 NOT_NEGATIVE = ("intervention", "relaxation", "stuck")
 
+YOUNGER = ("wish", "command")
+"""Fields that older run folders do not have; not known is NaN."""
+
 
 def read(path: Path, experiment: Experiment, seed: int) -> Trajectory:
     """The states of the run of that experiment with that seed.
@@ -38,6 +41,9 @@ def read(path: Path, experiment: Experiment, seed: int) -> Trajectory:
         rows = _rows(path, archive, experiment)
         states = {}
         for name, (dtype, shape) in _layout(experiment, rows).items():
+            if name in YOUNGER and not _has(archive, name):
+                states[name] = np.full(shape, np.nan)
+                continue
             found_dtype, found_shape = _header(path, archive, name)
             if found_shape != shape:
                 raise InputError(f"{path}: {name}: expected the shape {shape}, got {found_shape}")
@@ -66,6 +72,8 @@ def _layout(experiment: Experiment, rows: int) -> dict[str, tuple[np.dtype[Any],
         "relaxation": (REAL, (rows, n)),
         "blockers": (SMALL, (rows, n, BLOCKERS)),
         "stuck": (REAL, (rows, n)),
+        "wish": (REAL, (rows, n, 2)),
+        "command": (REAL, (rows, n, 2)),
         "angle_errors": (REAL, (rows, len(experiment.angles))),
     }
 
@@ -118,7 +126,7 @@ def _rows(path: Path, archive: zipfile.ZipFile, experiment: Experiment) -> int:
 
 def _header(path: Path, archive: zipfile.ZipFile, name: str) -> tuple[np.dtype[Any], tuple[int, ...]]:
     """Type and shape of a field, from its header alone."""
-    if f"{name}.npy" not in archive.namelist():
+    if not _has(archive, name):
         raise InputError(f"{path}: {name}: missing")
     with _told(path, name), archive.open(f"{name}.npy") as member:
         version = np.lib.format.read_magic(member)
@@ -128,6 +136,10 @@ def _header(path: Path, archive: zipfile.ZipFile, name: str) -> tuple[np.dtype[A
         }[version]
         shape, _, dtype = read_header(member)
     return dtype, shape
+
+
+def _has(archive: zipfile.ZipFile, name: str) -> bool:
+    return f"{name}.npy" in archive.namelist()
 
 
 def _array(path: Path, archive: zipfile.ZipFile, name: str) -> NDArray[Any]:

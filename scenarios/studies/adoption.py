@@ -107,6 +107,8 @@ def _trajectory(experiment: Experiment, t: Real, poses: Real, points: Real, arra
         relaxation=np.zeros(robots),
         blockers=np.full((*robots, BLOCKERS), -1, dtype=np.int32),
         stuck=np.zeros(robots),
+        wish=np.full((*robots, 2), np.nan),
+        command=np.full((*robots, 2), np.nan),
     )
 
 

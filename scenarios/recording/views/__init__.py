@@ -3,4 +3,16 @@
 Where streams go, and when, is not known here: a :class:`~scenarios.recording.recorder.Recorder` takes all.
 """
 
-__all__ = ["blueprint", "happenings", "plots", "scene", "style", "summary", "timeline"]
+__all__ = [
+    "angles",
+    "blueprint",
+    "filtering",
+    "happenings",
+    "legend",
+    "obstacles",
+    "plots",
+    "scene",
+    "style",
+    "summary",
+    "timeline",
+]

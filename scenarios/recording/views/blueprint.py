@@ -14,15 +14,27 @@ from scenarios.definition.experiment import Experiment
 from scenarios.measures.tracking import predicted_ends
 from scenarios.recording.piece import Real
 from scenarios.recording.recorder import TIMELINE
-from scenarios.recording.views import plots, scene, style, summary, timeline
+from scenarios.recording.views import angles, legend, plots, scene, style, summary, timeline
 
 Span = tuple[float, float]
 
 MARGIN = 0.22
 """Metres of floor around everything that is shown."""
 
+MARGIN_SHARE = 0.06
+"""The same as a share of the longer side, for a floor on which :data:`MARGIN` is too little to write in."""
+
 REACH = 3.0
 """Metres beyond floor, start and predicted ends that a run may widen the view: a run that diverges has no limits."""
+
+WIDE = 2.0
+"""Times the area of what happens from which a floor is shown in part."""
+
+FAR = 1.5
+"""Times that robots are larger in the view from near by, from which it is in front."""
+
+MOSTLY = 0.9
+"""Share of the run in which the camera that goes with the formation has all of it in sight."""
 
 LOG_RANGE = (-14.0, 1.5)
 """Decades that logarithmic plots show."""
@@ -32,15 +44,21 @@ TIME_MARGIN = 1.08
 
 FIGURES = {
     plots.ANGLES: "Angle errors (rad)",
-    plots.ERROR_SUM: "log10 of sum, goal green",
-    plots.SEPARATION: "Closest pair (m), limit red",
+    plots.ERROR_SUM: "log10 of angle error sum",
+    plots.SEPARATION: "Closest pair (m)",
     plots.WHEELS: "Wheels (rad/s), limits red",
-    plots.SCALE: "Scale, predicted grey",
+    plots.SCALE: "Scale",
     plots.ORIENTATION: "Orientation (deg)",
-    plots.CENTROID: "Centroid (m): x blue, y gold",
+    plots.CENTROID: "Centroid (m)",
     plots.DISTANCE: "log10 distance to predicted",
 }
-"""Plots and their titles. A title says what a legend would: a legend hides what it explains."""
+"""Plots and their titles."""
+
+LEGENDS = (plots.ANGLES, plots.ERROR_SUM, plots.SEPARATION, plots.SCALE, plots.ORIENTATION, plots.CENTROID)
+"""Plots with a legend, on the right, above or below what ends there."""
+
+MOST_IN_LEGEND = 4
+"""Curves above which a legend hides what it explains: their colours are those of the agents in the arena."""
 
 BESIDE = {plots.CLEARANCE: "Walls, obstacles (m)"}
 """How near a point and a hull come to walls and obstacles, behind the summary."""
@@ -59,10 +77,11 @@ SHARED = {
 
 def single(experiment: Experiment, points: Real, live: bool = False) -> rrb.Blueprint:
     """The layout for one run whose projected points are (T, n, 2), metres; a live one follows the newest data."""
+    crowd = experiment.n > style.CROWD
     left = rrb.Vertical(
-        arena(experiment, points, "", "Arena (m)"),
+        scenery(experiment, points),
         rrb.Horizontal(states([""], length(experiment)), notes(experiment, "")),
-        row_shares=[1.85, 1.0],
+        row_shares=[2.2 if crowd else 1.85, 1.0],
     )
     absent = set()
     if experiment.plant == "single_integrator":
@@ -70,8 +89,11 @@ def single(experiment: Experiment, points: Real, live: bool = False) -> rrb.Blue
     if not experiment.predicted:
         absent.add(plots.DISTANCE)
     shown = {entity: name for entity, name in FIGURES.items() if entity not in absent}
-    right = rrb.Grid(*figures([""], shown, length(experiment), spans(experiment, points)), grid_columns=2)
-    return _layout(rrb.Horizontal(left, right, column_shares=[1.35, 1.0]), "following" if live else "playing")
+    right = figures([""], shown, length(experiment), spans(experiment, points), legends(experiment, points))
+    beside = rrb.Grid(*right, grid_columns=2)
+    return _layout(
+        rrb.Horizontal(left, beside, column_shares=[1.6 if crowd else 1.35, 1.0]), "following" if live else "playing"
+    )
 
 
 def pair(
@@ -92,20 +114,48 @@ def pair(
     )
 
 
+def scenery(experiment: Experiment, points: Real) -> rrb.Spatial2DView | rrb.Tabs:
+    """The arena, and behind it the same from near by: with each angle in words, and going with the formation.
+
+    What is near is in front where robots would be that much larger: for a formation that leaves, or a wide floor.
+    """
+    states = points.reshape(-1, experiment.n, 2)
+    spread = [
+        np.abs(each - each.mean(axis=1, keepdims=True)).max(axis=1)
+        for each in (states[np.isfinite(states).all(axis=(1, 2))], predicted_ends(experiment, states[0]))
+    ]
+    half = np.maximum(np.quantile(spread[0], MOSTLY, axis=0), spread[1].max(axis=0)) + 1.5 * MARGIN
+    near = _spatial(
+        "", f"/{scene.CAMERA}", "Near by, moving along", (-half[0], half[0]), (-half[1], half[1]), words=True
+    )
+    (left, bottom), (right, top) = bounds(experiment, points)
+    far = min((right - left) / (2.0 * half[0]), (top - bottom) / (2.0 * half[1])) > FAR
+    return rrb.Tabs(arena(experiment, points, "", "Arena (m)"), near, active_tab=1 if far else 0)
+
+
 def arena(experiment: Experiment, points: Real, root: str, name: str) -> rrb.Spatial2DView:
     """The robots on their floor, with everything that happens in sight."""
+    (x0, y0), (x1, y1) = bounds(experiment, points)
+    return _spatial(root, _path(root, scene.VIEW), name, (x0, x1), (-y1, -y0))
+
+
+def bounds(experiment: Experiment, points: Real) -> tuple[Real, Real]:
+    """The lower left and the upper right corner of what happens, metres; of a floor that is far wider, a part."""
     start = points.reshape(-1, experiment.n, 2)[0]
-    known = np.concatenate(
-        [
-            start,
-            predicted_ends(experiment, start).reshape(-1, 2),
-            experiment.arena.corners,
-            ROBOTARIUM_FLOOR.corners,
-        ]
-    )
+    known = np.concatenate([start, predicted_ends(experiment, start).reshape(-1, 2)])
     low, high = known.min(axis=0), known.max(axis=0)
     seen = points[np.isfinite(points).all(axis=-1)].clip(low - REACH, high + REACH)
-    (x0, y0), (x1, y1) = np.minimum(low, seen.min(axis=0)) - MARGIN, np.maximum(high, seen.max(axis=0)) + MARGIN
+    known = np.concatenate([known, seen, ROBOTARIUM_FLOOR.corners])
+    low, high = known.min(axis=0), known.max(axis=0)
+    floor = experiment.arena.corners
+    if np.prod(np.ptp(floor, axis=0)) < WIDE * np.prod(high - low):
+        low, high = np.minimum(low, floor.min(axis=0)), np.maximum(high, floor.max(axis=0))
+    margin = max(MARGIN, MARGIN_SHARE * float((high - low).max()))
+    return low - margin, high + margin
+
+
+def _spatial(root: str, origin: str, name: str, x: Span, y: Span, words: bool = False) -> rrb.Spatial2DView:
+    """A view of the arena; with the angles in words, or with each robot's range."""
     trail = rrb.VisibleTimeRanges(
         timeline=TIMELINE,
         start=rrb.TimeRangeBoundary.cursor_relative(seconds=-style.TRAIL_LENGTH),
@@ -113,9 +163,10 @@ def arena(experiment: Experiment, points: Real, root: str, name: str) -> rrb.Spa
     )
     still = rrb.EntityBehavior(interactive=False)
     return rrb.Spatial2DView(
-        origin=_path(root, scene.VIEW),
+        origin=origin,
+        contents=_below([root], scene.VIEW) + ([] if words else [f"- {_path(root, angles.WORDS)}"]),
         name=name,
-        visual_bounds=rrb.VisualBounds2D(x_range=(x0, x1), y_range=(-y1, -y0)),
+        visual_bounds=rrb.VisualBounds2D(x_range=x, y_range=y),
         background=rrb.Background(color=style.BACKGROUND),
         overrides={_path(root, scene.TRAILS): trail, **{_path(root, entity): still for entity in scene.BACKDROP}},
     )
@@ -124,7 +175,9 @@ def arena(experiment: Experiment, points: Real, root: str, name: str) -> rrb.Spa
 def states(roots: Sequence[str], seconds: float) -> rrb.StateTimelineView:
     """What is the case, over the whole run."""
     return rrb.StateTimelineView(
-        contents=_below(roots, timeline.STATES), name="States", time_view=rrb.TimeAxis(view_range=_times(seconds))
+        contents=[each for lane in timeline.LANES for each in _below(roots, lane)],
+        name="States",
+        time_view=rrb.TimeAxis(view_range=_times(seconds)),
     )
 
 
@@ -133,6 +186,7 @@ def notes(experiment: Experiment, root: str) -> rrb.Tabs:
     bounded = experiment.arena.walls or bool(experiment.arena.obstacles)
     return rrb.Tabs(
         rrb.TextDocumentView(origin=_path(root, summary.SUMMARY), name="Summary"),
+        rrb.TextDocumentView(origin=_path(root, legend.LEGEND), name="Legend"),
         rrb.TextLogView(
             origin=_path(root, timeline.EVENTS),
             name="Events",
@@ -145,7 +199,11 @@ def notes(experiment: Experiment, root: str) -> rrb.Tabs:
 
 
 def figures(
-    roots: Sequence[str], shown: dict[str, str], seconds: float, span: dict[str, Span]
+    roots: Sequence[str],
+    shown: dict[str, str],
+    seconds: float,
+    span: dict[str, Span],
+    legends: dict[str, rrb.Corner2D] | None = None,
 ) -> list[rrb.TimeSeriesView]:
     """Plots by entity and title, with all runs below ``roots`` in one set of axes."""
     return [
@@ -154,7 +212,7 @@ def figures(
             name=name,
             axis_x=rrb.TimeAxis(view_range=_times(seconds * TIME_MARGIN)),
             axis_y=rrb.ScalarAxis(range=span[entity]) if entity in span else None,
-            plot_legend=rrb.PlotLegend(visible=False),
+            plot_legend=rrb.PlotLegend(corner=(legends or {}).get(entity), visible=entity in (legends or {})),
         )
         for entity, name in shown.items()
     ]
@@ -181,6 +239,17 @@ def spans(experiment: Experiment, points: Real) -> dict[str, Span]:
 def length(experiment: Experiment) -> float:
     """Planned length of a run, seconds."""
     return sum(phase.duration for phase in experiment.phases)
+
+
+def legends(experiment: Experiment, points: Real) -> dict[str, rrb.Corner2D]:
+    """Where the legends of plots stand, by entity; none where it would hide what it explains."""
+    low, high = spans(experiment, points)[plots.ORIENTATION]
+    seen = points.reshape(-1, experiment.n, 2)
+    turned = np.degrees(wrap(fit_similarity(experiment.formation, seen[np.isfinite(seen).all(axis=(1, 2))][-1])[1]))
+    below = {plots.SEPARATION: True, plots.SCALE: True, plots.ORIENTATION: bool(turned > (low + high) / 2.0)}
+    most = {plots.ANGLES: len(experiment.angles)}
+    corners = {True: rrb.Corner2D.RightBottom, False: rrb.Corner2D.RightTop}
+    return {entity: corners[below.get(entity, False)] for entity in LEGENDS if most.get(entity, 0) <= MOST_IN_LEGEND}
 
 
 def _path(root: str, entity: str) -> str:

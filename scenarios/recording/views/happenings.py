@@ -9,6 +9,7 @@ from scenarios.definition.events.event import Event
 from scenarios.recording.piece import Piece, Real
 from scenarios.recording.recorder import Recorder
 from scenarios.recording.views import style
+from scenarios.recording.views.obstacles import hatching
 from scenarios.recording.views.scene import WORLD
 from scenarios.recording.views.timeline import EVENTS
 from scenarios.simulation.outages import whereabouts
@@ -56,7 +57,8 @@ def _show(recorder: Recorder, piece: Piece, event: Event) -> None:
         recorder.fixed(
             f"{entity}/outline", rr.LineStrips2D.from_fields(colors=[style.WALL], radii=[0.008], draw_order=-15.0)
         )
-        recorder.columns(f"{entity}/outline", t, rr.LineStrips2D.columns(strips=[outline]))
+        strips = [outline, *hatching(outline)]
+        recorder.columns(f"{entity}/outline", t, rr.LineStrips2D.columns(strips=strips).partition([len(strips)]))
 
 
 def _hide(recorder: Recorder, event: Event, time: float) -> None:

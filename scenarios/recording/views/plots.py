@@ -42,7 +42,7 @@ def styles(recorder: Recorder, experiment: Experiment) -> None:
     for entity in (SCALE, ORIENTATION):
         _style(recorder, f"{entity}/ideal", ["predicted"], [style.PREDICTED], 3.0)
         _style(recorder, f"{entity}/measured", ["measured"], [recorder.colour])
-    _style(recorder, f"{CENTROID}/ideal", ["x predicted", "y predicted"], [style.PREDICTED] * 2, 3.0)
+    _style(recorder, f"{CENTROID}/ideal", ["predicted"] * 2, [style.PREDICTED] * 2, 3.0)
     _style(recorder, f"{CENTROID}/measured", ["x", "y"], [style.MEASURED, style.SECOND])
     rows = range(experiment.n)
     for entity in (DISTANCE, INTERVENTIONS):
@@ -52,7 +52,7 @@ def styles(recorder: Recorder, experiment: Experiment) -> None:
 
 def angle_errors(recorder: Recorder, piece: Piece) -> None:
     """Each angle error, radians."""
-    _series(recorder, f"{ANGLES}/value", piece.t, piece.angle_errors)
+    _wrapped(recorder, f"{ANGLES}/value", piece.t, piece.angle_errors, 2.0 * np.pi)
 
 
 def error_sum(recorder: Recorder, piece: Piece) -> None:
@@ -104,14 +104,13 @@ def tracking(recorder: Recorder, piece: Piece) -> None:
     scale, angle, centroid = fits(experiment, piece.trajectory.phase, points)
     scale_0, angle_0, centroid_0 = fits(experiment, piece.trajectory.phase, wanted)
     angle_0 = wrap(angle_0)
-    for entity, measured, predicted in (
-        (SCALE, scale, scale_0),
-        (ORIENTATION, np.degrees(angle_0 + wrap(angle - angle_0)), np.degrees(angle_0)),
-        (CENTROID, centroid, centroid_0),
-    ):
+    for entity, measured, predicted in ((SCALE, scale, scale_0), (CENTROID, centroid, centroid_0)):
         if experiment.predicted:
             _series(recorder, f"{entity}/ideal", piece.t, predicted)
         _series(recorder, f"{entity}/measured", piece.t, measured)
+    if experiment.predicted:
+        _wrapped(recorder, f"{ORIENTATION}/ideal", piece.t, np.degrees(angle_0), 360.0)
+    _wrapped(recorder, f"{ORIENTATION}/measured", piece.t, np.degrees(angle_0 + wrap(angle - angle_0)), 360.0)
     if not experiment.predicted:
         return
     distance = np.linalg.norm(points - wanted, axis=-1)
@@ -120,6 +119,17 @@ def tracking(recorder: Recorder, piece: Piece) -> None:
 
 def _series(recorder: Recorder, entity: str, t: Real, values: Real) -> None:
     recorder.columns(entity, t, rr.Scalars.columns(scalars=values))
+
+
+def _wrapped(recorder: Recorder, entity: str, t: Real, values: Real, turn: float) -> None:
+    """Series that jump by a ``turn``: a gap in the middle of each jump, where the viewer would draw a spike."""
+    values = values.reshape(len(t), -1)
+    jumps = np.abs(np.diff(values, axis=0)) > turn / 2.0
+    rows = np.flatnonzero(jumps.any(axis=1))
+    between = (values[rows] + values[rows + 1]) / 2.0
+    between[jumps[rows]] = np.nan
+    t = np.insert(t, rows + 1, (t[rows] + t[rows + 1]) / 2.0)
+    _series(recorder, entity, t, np.insert(values, rows + 1, between, axis=0))
 
 
 def _level(recorder: Recorder, entity: str, piece: Piece, values: list[float]) -> None:

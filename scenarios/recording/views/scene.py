@@ -22,12 +22,11 @@ from scenarios.simulation.outages import lost_edges
 Single = NDArray[np.float32]
 
 VIEW = "arena"
-WORLD = f"{VIEW}/world"
+WORLD, CAMERA = f"{VIEW}/world", f"{VIEW}/camera"
 ROBOTS = f"{WORLD}/robots"
 SENSING = f"{WORLD}/sensing"
 TRAILS = f"{WORLD}/trails"
 PREDICTION = f"{WORLD}/prediction"
-OBSTACLES = f"{WORLD}/obstacles"
 FLOOR, TESTBED, GRID, TICKS = f"{WORLD}/floor", f"{WORLD}/testbed", f"{WORLD}/grid", f"{WORLD}/ticks"
 BACKDROP = (FLOOR, TESTBED, GRID, TICKS)
 """What the pointer passes over in silence."""
@@ -37,6 +36,12 @@ RING = 0.04
 
 GHOST_PERIODS = 10
 """Control periods between two places of a ghost that moves."""
+
+DOT = 3.5
+"""Radius of a robot's dot in a crowd, points of the screen."""
+
+MARK, MARK_CORNERS = 0.038, (4, 3)
+"""Radius, metres, of the marks on leader and first follower, and their corners: a diamond and a triangle."""
 
 FILL = 0.01
 """Half the width of the strokes that fill a chassis, metres."""
@@ -67,7 +72,9 @@ def ground(recorder: Recorder, arena: Arena) -> None:
             TESTBED,
             rr.LineStrips2D(_closed(ROBOTARIUM_FLOOR.corners), colors=style.FLOOR, radii=0.004, draw_order=-21.0),
         )
-    x, y = _multiples(arena.x), _multiples(arena.y)
+    longest = max(arena.x[1] - arena.x[0], arena.y[1] - arena.y[0])
+    step = next((step for step in style.GRID_STEPS if longest / step <= style.GRID_LINES), longest)
+    x, y = _multiples(arena.x, step), _multiples(arena.y, step)
     across = [[[value, arena.y[0]], [value, arena.y[1]]] for value in x]
     along = [[[arena.x[0], value], [arena.x[1], value]] for value in y]
     recorder.fixed(
@@ -77,35 +84,47 @@ def ground(recorder: Recorder, arena: Arena) -> None:
     recorder.fixed(TICKS, _ticks(arena, x, y))
 
 
-def obstacles(recorder: Recorder, experiment: Experiment) -> None:
-    """What stands on the floor, as outlines."""
-    outlines = [obstacle.outline.astype(np.float32) for obstacle in experiment.arena.obstacles]
-    if outlines:
-        recorder.fixed(OBSTACLES, rr.LineStrips2D(outlines, colors=style.WALL, radii=0.008, draw_order=-15.0))
-
-
 def bodies(recorder: Recorder, experiment: Experiment) -> None:
-    """The body of each robot, with its number."""
+    """The body of each robot, with its number; leader and first follower with a mark and a word.
+
+    In a crowd only these two have words, and a dot of the screen's own size shows where each robot is.
+    """
     names = [str(experiment.number(row)) for row in range(experiment.n)]
-    fleet = experiment.fleet
-    for name, body, point, row in zip(
-        names,
-        fleet.bodies,
-        np.broadcast_to(fleet.nid.projection_distance, experiment.n),
-        range(experiment.n),
-        strict=True,
-    ):
-        draw_bodies(recorder, RobotModel(fleet.drive, body), float(point), [name], row)
+    crowd, fleet = experiment.n > style.CROWD, experiment.fleet
+    words = [f"{name} {role}" for name, role in zip(names, roles(experiment), strict=False)]
+    labels = words + [("" if crowd else name) for name in names[len(words) :]]
+    points = np.broadcast_to(fleet.nid.projection_distance, experiment.n).tolist()
+    for row, (body, point) in enumerate(zip(fleet.bodies, points, strict=True)):
+        draw_bodies(recorder, RobotModel(fleet.drive, body), point, [names[row]], [labels[row]], crowd, row)
+    for row, corners in zip(range(len(words)), MARK_CORNERS, strict=False):
+        turn = 2.0 * np.pi * np.arange(corners + 1) / corners
+        mark = MARK * np.stack([np.cos(turn), np.sin(turn)], axis=-1) + [points[row], 0.0]
+        strip = rr.LineStrips2D(mark[None].astype(np.float32), colors=style.SECOND, radii=0.005, draw_order=11.5)
+        recorder.fixed(f"{ROBOTS}/{names[row]}/mark", strip)
 
 
-def draw_bodies(recorder: Recorder, robot: RobotModel, point: float, names: Sequence[str], first: int = 0) -> None:
+def roles(experiment: Experiment) -> tuple[str, ...]:
+    """What agents 1, 2, ... are called where not all are alike."""
+    return ("leader", "first follower") if experiment.aim.target is not None and experiment.predicted else ()
+
+
+def draw_bodies(
+    recorder: Recorder,
+    robot: RobotModel,
+    point: float,
+    names: Sequence[str],
+    labels: Sequence[str] | None = None,
+    dots: bool = False,
+    first: int = 0,
+) -> None:
     """Chassis, wheels, nose and name of each robot, in the frame of its axle's centre, which is ``point`` behind it.
 
-    ``first`` is the row of the first one, by which they are coloured.
+    Beside the projected point stands a robot's label, by default its name; ``dots`` are as large from near and far.
+    ``first`` is the row of the first robot, by which they are coloured.
     """
     fill, outline, wheels = _body(robot)
     nose = [[point, 0.0]]
-    for row, name in enumerate(names, start=first):
+    for row, (name, label) in enumerate(zip(names, labels or names, strict=True), start=first):
         colour, entity = style.agent_colour(row), f"{ROBOTS}/{name}"
         paint = style.tint(colour, 0.3)
         recorder.fixed(f"{entity}/fill", rr.LineStrips2D(fill, colors=paint, radii=FILL, draw_order=9.0))
@@ -113,7 +132,14 @@ def draw_bodies(recorder: Recorder, robot: RobotModel, point: float, names: Sequ
         recorder.fixed(f"{entity}/wheels", rr.LineStrips2D(wheels, colors=style.WHEEL, radii=0.009, draw_order=11.0))
         recorder.fixed(
             f"{entity}/point",
-            rr.Points2D(nose, colors=style.TEXT, radii=0.012, labels=name, show_labels=True, draw_order=12.0),
+            rr.Points2D(
+                nose,
+                colors=colour if dots else style.TEXT,
+                radii=rr.Radius.ui_points(DOT) if dots else 0.012,
+                labels=label or None,
+                show_labels=True,
+                draw_order=12.0,
+            ),
         )
 
 
@@ -174,8 +200,10 @@ def _lost(piece: Piece, rows: Index, m: int) -> NDArray[np.bool_]:
 
 def sensing_style(recorder: Recorder, experiment: Experiment) -> None:
     """Thin and behind the robots."""
-    m = len(experiment.graph.edges)
-    recorder.fixed(SENSING, rr.Arrows2D.from_fields(colors=[style.SENSING] * m, radii=[0.006] * m, draw_order=5.0))
+    m, crowd = len(experiment.graph.edges), experiment.n > style.CROWD
+    colour = style.GHOST if crowd else style.SENSING
+    radii = np.full(m, rr.Radius.ui_points(0.5) if crowd else 0.006, dtype=np.float32)
+    recorder.fixed(SENSING, rr.Arrows2D.from_fields(colors=[colour] * m, radii=radii, draw_order=5.0))
 
 
 def trails(recorder: Recorder, piece: Piece) -> None:
@@ -219,6 +247,8 @@ def prediction(recorder: Recorder, piece: Piece) -> None:
     rings = ends[:, :, None] + RING * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
     t = piece.t[np.maximum(rows - 1, 0)]
     recorder.columns(f"{PREDICTION}/rings", t, _strips(rings))
+    if piece.experiment.n > style.CROWD:
+        return
     for experiment, some in _by_shape(piece, rows):
         observer, observed = experiment.graph.edges.T
         there = np.isin(rows, some)
@@ -234,6 +264,14 @@ def prediction_style(recorder: Recorder, experiment: Experiment) -> None:
     recorder.fixed(f"{PREDICTION}/rings", rings)
     links = rr.LineStrips2D.from_fields(colors=[style.GHOST] * m, radii=[0.002] * m, draw_order=1.0)
     recorder.fixed(f"{PREDICTION}/links", links)
+
+
+def camera(recorder: Recorder, piece: Piece) -> None:
+    """A frame that goes with the formation: its origin is the centroid of the projected points, y down."""
+    rows = _finite(piece.trajectory.points)
+    centre = np.zeros((len(rows), 3))
+    centre[:, :2] = piece.trajectory.points[rows].mean(axis=1) * [1.0, -1.0]
+    recorder.columns(CAMERA, piece.t[rows], rr.Transform3D.columns(translation=centre))
 
 
 def _finite(states: Real) -> Index:
@@ -253,8 +291,7 @@ def _strips(strips: Real) -> rr.ComponentColumnList:
     )
 
 
-def _multiples(side: tuple[float, float]) -> Real:
-    step = style.GRID_STEP
+def _multiples(side: tuple[float, float], step: float) -> Real:
     return step * np.arange(np.ceil(side[0] / step), np.floor(side[1] / step) + 1.0)
 
 

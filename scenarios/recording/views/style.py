@@ -19,6 +19,7 @@ AGENTS: tuple[Colour, ...] = (
 BACKGROUND: Colour = (16, 18, 22)
 FLOOR: Colour = (120, 125, 135)
 WALL: Colour = (200, 205, 215)
+HATCH: Colour = (120, 124, 134)
 GRID: Colour = (32, 35, 41)
 TEXT: Colour = (240, 242, 246)
 """Of labels in the arena: the light theme puts them on grey, the dark one on black."""
@@ -37,8 +38,16 @@ GOAL: Colour = (90, 190, 110)
 PHASES: tuple[Colour, ...] = ((60, 90, 150), (120, 80, 150), (45, 115, 125), (120, 90, 70))
 """Colours of the phases, repeated from the fifth on."""
 
-GRID_STEP = 0.5
-"""Metres between two lines of the floor's grid."""
+RANGE: Colour = (52, 57, 68)
+"""Of the circle in which a robot senses."""
+
+CROWD = 12
+"""Agents above which a picture leaves out what it would drown in: words at each robot, arcs, arrows, ranges."""
+
+GRID_STEPS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
+"""Metres between two lines of the floor's grid: the first that needs no more than :data:`GRID_LINES`."""
+
+GRID_LINES = 11
 
 TICK_GAP = 0.12
 """Metres between the floor's side and a coordinate beside it."""

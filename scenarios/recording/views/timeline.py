@@ -14,9 +14,16 @@ from scenarios.recording.recorder import Recorder
 from scenarios.recording.views import style
 from scenarios.recording.views.style import Colour
 
-STATES, EVENTS = "states", "events"
-ACTIVE, PHASE, ERRORS = f"{STATES}/active", f"{STATES}/phase", f"{STATES}/angles"
-DISTANCE, FLOOR, SAFETY = f"{STATES}/separation", f"{STATES}/floor", f"{STATES}/safety"
+EVENTS = "events"
+PHASE, ACTIVE, ERRORS, DISTANCE, FLOOR, SAFETY = LANES = (
+    "Phase",
+    "Active",
+    "Angles",
+    "Separation",
+    "Floor",
+    "Safety",
+)
+"""Entities with the names that people read: the viewer heads a lane by its entity's path."""
 
 SETTLING, AT_GOAL = "settling", "at goal"
 CLEAR, CLOSE = "clear", "too close"

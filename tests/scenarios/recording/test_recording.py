@@ -20,7 +20,8 @@ from rerun.chunk import RrdReader
 from rich.console import Console
 
 import scenarios.one_run
-from formation import agents
+from formation import agents as numbering
+from robots.obstacles import Obstacle
 from robots.testbed import COLLISION_DISTANCE
 from robots.worlds import NOTHING
 from scenarios.definition.experiment import Experiment, open_experiment
@@ -37,7 +38,18 @@ from scenarios.recording.file import damage, write
 from scenarios.recording.piece import rows, whole
 from scenarios.recording.recorder import TIMELINE, Recorder, open_stream
 from scenarios.recording.streams import send_motion, send_setup
-from scenarios.recording.views import happenings, plots, scene, timeline
+from scenarios.recording.views import (
+    angles,
+    blueprint,
+    filtering,
+    happenings,
+    legend,
+    obstacles,
+    plots,
+    scene,
+    style,
+    timeline,
+)
 from scenarios.replay import recording_of
 from scenarios.simulation.loop import simulate
 from scenarios.simulation.trajectory import Trajectory
@@ -68,6 +80,12 @@ def data(batch: pa.RecordBatch) -> str:
 
 def scalars(columns: Columns, entity: str) -> np.ndarray:
     return np.array(columns[f"/{entity}"]["scalars"][1])
+
+
+def of_states(columns: Columns, entity: str, t: np.ndarray) -> np.ndarray:
+    """Scalars at the times of states; rows between them are gaps in curves that jump by a turn."""
+    times = columns[f"/{entity}"]["scalars"][0]
+    return scalars(columns, entity)[np.isin(times, np.round(t * 1e9).astype("int64"))]
 
 
 def encoded(experiment: Experiment, path: Path, seed: int = 0) -> tuple[Path, object, object]:
@@ -107,6 +125,11 @@ def test_every_stream_has_its_entities(columns: Columns) -> None:
         f"/{scene.TRAILS}": {"strips"},
         f"/{scene.PREDICTION}/rings": {"strips"},
         f"/{scene.PREDICTION}/links": {"strips"},
+        f"/{scene.CAMERA}": {"translation"},
+        f"/{angles.MEASURED}": {"strips"},
+        f"/{angles.ERROR}": {"strips"},
+        f"/{angles.WORDS}": {"labels"},
+        f"/{legend.LEGEND}": {"text"},
         f"/{plots.ANGLES}/value": {"scalars", "names"},
         f"/{plots.ERROR_SUM}/value": {"scalars"},
         f"/{plots.ERROR_SUM}/goal": {"scalars"},
@@ -129,7 +152,8 @@ def test_every_stream_has_its_entities(columns: Columns) -> None:
         expected |= {f"/{entity}/{kind}": {"scalars"} for kind in ("ideal", "measured")}
     for number in range(1, 7):
         expected[f"/{scene.ROBOTS}/{number}"] = {"translation", "quaternion"}
-        expected |= {f"/{scene.ROBOTS}/{number}/{part}": {"strips"} for part in ("fill", "outline", "wheels")}
+        expected |= {f"/{scene.ROBOTS}/{number}/{part}": {"strips"} for part in ("fill", "outline", "wheels", "kept")}
+        expected[f"/{scene.ROBOTS}/{number}/velocity"] = {"vectors"}
         expected[f"/{scene.ROBOTS}/{number}/point"] = {"positions", "labels"}
     for entity, components in expected.items():
         assert components <= columns.get(entity, {}).keys(), entity
@@ -137,14 +161,14 @@ def test_every_stream_has_its_entities(columns: Columns) -> None:
 
 def test_scalars_are_bit_for_bit_the_numbers_of_the_trajectory(run: Path, columns: Columns) -> None:
     with np.load(run / run_folder.TRAJECTORY) as data:
-        assert np.array_equal(scalars(columns, f"{plots.ANGLES}/value"), data["angle_errors"])
+        assert np.array_equal(of_states(columns, f"{plots.ANGLES}/value", data["t"]), data["angle_errors"])
         wheels = scalars(columns, f"{plots.WHEELS}/value")
         assert np.array_equal(wheels.reshape(data["wheel_speeds"].shape), data["wheel_speeds"])
 
 
 def test_times_are_simulation_time_to_the_nanosecond(run: Path, columns: Columns) -> None:
     with np.load(run / run_folder.TRAJECTORY) as data:
-        times = columns[f"/{plots.ANGLES}/value"]["scalars"][0]
+        times = columns[f"/{plots.WHEELS}/value"]["scalars"][0]
         np.testing.assert_allclose(times, data["t"] * 1e9, atol=0.5 + 1e-6, rtol=0)
 
 
@@ -152,7 +176,7 @@ def test_robots_are_where_they_are_and_point_where_they_point(run: Path, columns
     with np.load(run / run_folder.TRAJECTORY) as data:
         poses = data["poses"]
     for row in range(6):
-        parts = columns[f"/{scene.ROBOTS}/{agents.number(row)}"]
+        parts = columns[f"/{scene.ROBOTS}/{numbering.number(row)}"]
         places = np.array(parts["translation"][1]).reshape(-1, 3)
         np.testing.assert_array_equal(places[:, :2], poses[:, row, :2].astype(np.float32))
         _, _, z, w = np.array(parts["quaternion"][1]).reshape(-1, 4).T
@@ -221,8 +245,101 @@ def test_obstacles_stand_where_they_are(tmp_path: Path) -> None:
     disc = "obstacles=[{vertices_m = [[1.0, 0.8]], radius_m = 0.1}]"
     experiment = open_experiment("shape", (disc,), 0.5)
     path, *_ = encoded(experiment, tmp_path / "run.rrd")
-    (strips,) = read(path)[f"/{scene.OBSTACLES}"]["strips"][1]
+    (strips,) = read(path)[f"/{obstacles.OBSTACLES}"]["strips"][1]
     np.testing.assert_allclose(strips[0], experiment.arena.obstacles[0].outline, atol=1e-6)
+
+
+@given(st.integers(3, 12), st.floats(0.02, 1.0), st.floats(0.0, 0.3))
+def test_hatching_lies_inside_its_obstacle(corners: int, size: float, radius: float) -> None:
+    turn = 2.0 * np.pi * np.arange(corners) / corners
+    obstacle = Obstacle(size * np.stack([np.cos(turn), np.sin(turn)], axis=-1), radius)
+    strokes = obstacles.hatching(obstacle.outline)
+    assert len(strokes)
+    assert (obstacle.distance(strokes.reshape(-1, 2)) < 1e-6).all()
+
+
+def test_a_segment_without_a_radius_has_no_hatching() -> None:
+    assert obstacles.hatching(Obstacle(np.array([[0.0, 0.0], [1.0, 0.0]])).outline).shape == (0, 2, 2)
+
+
+def test_arcs_go_from_ray_to_ray_and_say_the_angle_and_its_error(run: Path, columns: Columns) -> None:
+    read_back = run_folder.read(run)
+    experiment, trajectory = read_back.experiment, read_back.trajectory
+    times, strips = columns[f"/{angles.MEASURED}"]["strips"]
+    rows = np.flatnonzero(np.isin(np.round(trajectory.t * 1e9).astype("int64"), times))
+    points = trajectory.points[rows]
+    vertex, first, second = experiment.angles.triples.T
+    arcs = np.array([each for each in strips if each is not None]) + points.mean(axis=1)[:, None, None]
+    spokes = arcs - points[:, vertex, None]
+    for end, neighbour in ((0, first), (-1, second)):
+        ray = points[:, neighbour] - points[:, vertex]
+        across = spokes[:, :, end, 0] * ray[..., 1] - spokes[:, :, end, 1] * ray[..., 0]
+        np.testing.assert_allclose(across / np.linalg.norm(ray, axis=-1), 0.0, atol=1e-6)
+        assert ((spokes[:, :, end] * ray).sum(axis=-1) > 0.0).all()
+    said = [text for text in columns[f"/{angles.WORDS}"]["labels"][1] if text is not None]
+    for row, texts in zip(rows.tolist(), said, strict=True):
+        errors = np.degrees(experiment.angles.errors(trajectory.points[row], experiment.target_angles))
+        assert [f"({error:+.1f})" for error in errors] == [text.split(" ")[1] for text in texts]
+
+
+def test_a_curve_that_jumps_by_a_turn_has_a_gap_there_and_nowhere_else(run: Path, columns: Columns) -> None:
+    with np.load(run / run_folder.TRAJECTORY) as data:
+        t, errors = data["t"], data["angle_errors"]
+    jumps = np.argwhere(np.abs(np.diff(errors, axis=0)) > np.pi)
+    assert len(jumps)
+    times, _ = columns[f"/{plots.ANGLES}/value"]["scalars"]
+    values = scalars(columns, f"{plots.ANGLES}/value")
+    between = ~np.isin(times, np.round(t * 1e9).astype("int64"))
+    assert np.isfinite(values[~between]).all()
+    assert np.count_nonzero(np.isnan(values[between])) == len(jumps)
+    assert np.count_nonzero(between) == len(np.unique(jumps[:, 0]))
+
+
+def test_arrows_tell_the_velocity_before_and_after_the_filter(tmp_path: Path) -> None:
+    experiment = open_experiment("shape", (), 6.0)
+    path, trajectory, _ = encoded(experiment, tmp_path / "run.rrd")
+    found = read(path)
+    differs = 0
+    for row in range(experiment.n):
+        times, vectors = found[f"/{scene.ROBOTS}/{numbering.number(row)}/velocity"]["vectors"]
+        rows = np.flatnonzero(np.isin(np.round(trajectory.t * 1e9).astype("int64"), times))
+        for at, (before, after) in zip(rows.tolist(), [v for v in vectors if v is not None], strict=True):
+            for drawn, told in ((before, trajectory.wish[at, row]), (after, trajectory.command[at, row])):
+                arrow = filtering.AHEAD * told
+                longest = max(np.linalg.norm(arrow) / filtering.LONGEST, 1.0)
+                np.testing.assert_allclose(drawn, arrow / longest, atol=1e-6)
+            differs += not np.allclose(before, after, atol=1e-3)
+    assert differs
+
+
+def test_a_crowd_has_dots_and_no_arcs_ranges_or_arrows(recorded: Callable[..., Any], tmp_path: Path) -> None:
+    experiment = open_experiment("random-50")
+    points = experiment.target.positions + np.zeros((3, 1, 1))
+    poses = np.concatenate([points, np.zeros((3, 50, 1))], axis=-1)
+    trajectory = recorded(np.array([0.0, 0.5, 1.0]), poses, points)
+    metrics = measure(experiment, trajectory)
+    path = tmp_path / "run.rrd"
+    write(path, encode(experiment, 0, trajectory, metrics, result(experiment, 0, trajectory, metrics)))
+    found = read(path)
+    assert experiment.n > style.CROWD
+    for absent in (angles.MEASURED, angles.WORDS, f"{scene.ROBOTS}/3/sensing", f"{scene.ROBOTS}/3/velocity"):
+        assert f"/{absent}" not in found
+    said = {number: found[f"/{scene.ROBOTS}/{number}/point"].get("labels", (None, [None]))[1] for number in (1, 2, 3)}
+    assert said == {1: [["1 leader"]], 2: [["2 first follower"]], 3: [None]}
+
+
+def test_the_camera_goes_with_the_centroid(run: Path, columns: Columns) -> None:
+    with np.load(run / run_folder.TRAJECTORY) as data:
+        centre = data["points"].mean(axis=1)
+    places = np.array(columns[f"/{scene.CAMERA}"]["translation"][1]).reshape(-1, 3)
+    np.testing.assert_allclose(places[:, :2], centre * [1.0, -1.0], atol=1e-6)
+
+
+def test_the_view_from_near_by_is_in_front_where_the_formation_leaves(shape: Experiment) -> None:
+    start = shape.initial_points(0)
+    there = start + np.linspace(0.0, 1.0, 5)[:, None, None] * np.array([3.0, 3.0])
+    fronts = [blueprint.scenery(shape, points).active_tab for points in (start[None], there)]
+    assert fronts == [0, 1]
 
 
 def test_a_plant_without_wheels_has_no_wheel_speeds(moving: Callable[[str], Experiment], tmp_path: Path) -> None:
@@ -253,7 +370,7 @@ def test_who_touches_a_wall_is_an_event(tmp_path: Path) -> None:
     path, trajectory, _ = encoded(experiment, tmp_path / "run.rrd")
     (agent, *_) = np.flatnonzero((trajectory.contact == experiment.n).any(axis=0))
     texts = [text for (text,) in read(path)[f"/{timeline.EVENTS}/contacts"]["text"][1]]
-    assert f"{agents.name(agent)} touches a wall or an obstacle" in texts
+    assert f"{numbering.name(agent)} touches a wall or an obstacle" in texts
 
 
 def test_a_run_that_diverges_is_recorded_up_to_its_last_finite_state(shape: Experiment, tmp_path: Path) -> None:

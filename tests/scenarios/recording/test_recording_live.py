@@ -93,7 +93,7 @@ def test_every_control_period_reaches_the_viewer(tmp_path: Path, eventually: Eve
         assert view.finish(result(experiment, 0, trajectory, measure(experiment, trajectory)))
         nanoseconds = np.round(trajectory.t * 1e9).astype(int)
         periods = set(nanoseconds.tolist())
-        assert eventually(lambda: saved_rows(saved, f"{plots.ANGLES}/value"), periods) == periods
+        assert eventually(lambda: saved_rows(saved, f"{plots.ERROR_SUM}/value"), periods) == periods
         near = measure(experiment, trajectory).separation.distance < COLLISION_DISTANCE
         changes = set(nanoseconds[np.append(True, near[1:] != near[:-1])].tolist())
         assert len(changes) > 1
