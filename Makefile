@@ -2,6 +2,7 @@
 PYTHON ?= python3
 VENV := .venv
 LOWEST := .venv-lowest
+DOCS := .venv-docs
 DIST := .venv-dist
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
@@ -10,7 +11,7 @@ SCENARIO ?= shape
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install run test quick lint check bench figures dist lowest mutants fuzz kills pairs evidence screenshots clean
+.PHONY: help install run test quick lint check bench figures dist lowest mutants fuzz kills pairs evidence screenshots docs clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -106,6 +107,16 @@ evidence: $(STAMP) ## the Monte Carlo evidence over all seeds, printed (about 20
 screenshots: $(STAMP) ## pictures of the viewer for docs/recording.md (needs xvfb, Vulkan in software, chromium)
 	$(BIN)/python docs/screenshots.py
 
+docs: $(DOCS)/.installed ## the documentation site, strictly, into build/site
+	NO_MKDOCS_2_WARNING=1 $(DOCS)/bin/mkdocs build --quiet
+
+$(DOCS)/.installed: pyproject.toml constraints.txt
+	$(PYTHON) -m venv $(DOCS)
+	# What builds the site reads the source and imports none of it: an environment of its own keeps the other light.
+	sed -n '/^docs = \[/,/^\]/s/^ *"\(.*\)",$$/\1/p' pyproject.toml > $(DOCS)/requirements.txt
+	$(DOCS)/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --requirement $(DOCS)/requirements.txt
+	@touch $@
+
 clean: ## remove the environment, caches and runs
-	rm -rf $(VENV) $(LOWEST) $(DIST) runs build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache .benchmarks
+	rm -rf $(VENV) $(LOWEST) $(DOCS) $(DIST) runs build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache .benchmarks
 	find formation robots scenarios tests -name __pycache__ -type d -exec rm -rf {} +

@@ -93,7 +93,7 @@ def viewer(path: Path, environment: dict[str, str]) -> Iterator[int]:
     screen = ["xvfb-run", "-a", "-s", f"-screen 0 {3 * SIZE[0]}x{3 * SIZE[1]}x24"]
     command = [executable(), str(path), "--bind", LOOPBACK, "--port", str(port), "--window-size", "{}x{}".format(*SIZE)]
     with running(screen + command, environment, port):
-        time.sleep(3.0 * PAINTED)
+        time.sleep(6.0 * PAINTED)  # a recording of fifty robots takes a while to arrive
         yield port
 
 
