@@ -25,11 +25,11 @@ def circles(recorder: Recorder, experiment: Experiment) -> None:
     """
     settings, filtered = experiment.filter_settings, experiment.safety != "none"
     kept = settings.safe_distance if filtered else COLLISION_DISTANCE
-    for row in range(experiment.n):
+    for row, point in enumerate(scene.points_ahead(experiment)):
         robot = f"{scene.ROBOTS}/{experiment.number(row)}"
-        _circle(recorder, f"{robot}/kept", experiment, kept / 2.0, style.tint(style.LIMIT, 0.5))
+        _circle(recorder, f"{robot}/kept", point, kept / 2.0, style.tint(style.LIMIT, 0.5))
         if filtered and experiment.n <= style.CROWD:
-            _circle(recorder, f"{robot}/sensing", experiment, settings.sensing_range, style.RANGE)
+            _circle(recorder, f"{robot}/sensing", point, settings.sensing_range, style.RANGE)
 
 
 def velocities(recorder: Recorder, piece: Piece) -> None:
@@ -51,17 +51,16 @@ def velocities_style(recorder: Recorder, experiment: Experiment) -> None:
     """From the projected point, in the robot's own frame; gold under white."""
     if experiment.n > style.CROWD:
         return
-    point = [experiment.nid.projection_distance, 0.0]
-    arrows = rr.Arrows2D.from_fields(
-        origins=[point] * 2, colors=[style.SECOND, style.TEXT], radii=[0.008, 0.004], draw_order=13.0
-    )
-    for row in range(experiment.n):
+    for row, point in enumerate(scene.points_ahead(experiment)):
+        arrows = rr.Arrows2D.from_fields(
+            origins=[[point, 0.0]] * 2, colors=[style.SECOND, style.TEXT], radii=[0.008, 0.004], draw_order=13.0
+        )
         recorder.fixed(f"{scene.ROBOTS}/{experiment.number(row)}/velocity", arrows)
 
 
-def _circle(recorder: Recorder, entity: str, experiment: Experiment, radius: float, colour: style.Colour) -> None:
+def _circle(recorder: Recorder, entity: str, point: float, radius: float, colour: style.Colour) -> None:
     turn = np.linspace(0.0, 2.0 * np.pi, 49)
-    ring = radius * np.stack([np.cos(turn), np.sin(turn)], axis=-1) + [experiment.nid.projection_distance, 0.0]
+    ring = radius * np.stack([np.cos(turn), np.sin(turn)], axis=-1) + [point, 0.0]
     strip = ring[None].astype(np.float32)
     recorder.fixed(entity, rr.LineStrips2D(strip, colors=colour, radii=0.002, draw_order=4.0))
 

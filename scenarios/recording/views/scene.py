@@ -93,7 +93,7 @@ def bodies(recorder: Recorder, experiment: Experiment) -> None:
     crowd, fleet = experiment.n > style.CROWD, experiment.fleet
     words = [f"{name} {role}" for name, role in zip(names, roles(experiment), strict=False)]
     labels = words + [("" if crowd else name) for name in names[len(words) :]]
-    points = np.broadcast_to(fleet.nid.projection_distance, experiment.n).tolist()
+    points = points_ahead(experiment)
     for row, (body, point) in enumerate(zip(fleet.bodies, points, strict=True)):
         draw_bodies(recorder, RobotModel(fleet.drive, body), point, [names[row]], [labels[row]], crowd, row)
     for row, corners in zip(range(len(words)), MARK_CORNERS, strict=False):
@@ -101,6 +101,12 @@ def bodies(recorder: Recorder, experiment: Experiment) -> None:
         mark = MARK * np.stack([np.cos(turn), np.sin(turn)], axis=-1) + [points[row], 0.0]
         strip = rr.LineStrips2D(mark[None].astype(np.float32), colors=style.SECOND, radii=0.005, draw_order=11.5)
         recorder.fixed(f"{ROBOTS}/{names[row]}/mark", strip)
+
+
+def points_ahead(experiment: Experiment) -> list[float]:
+    """Metres from each robot's axle to its projected point."""
+    ahead: list[float] = np.broadcast_to(experiment.fleet.nid.projection_distance, experiment.n).tolist()
+    return ahead
 
 
 def roles(experiment: Experiment) -> tuple[str, ...]:
