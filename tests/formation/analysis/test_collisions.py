@@ -64,6 +64,14 @@ def test_neighbours_that_are_not_quite_settled_cost_no_more_than_the_bound(seed:
             assert abs(p[4] - p[m]) >= bound[2] - 1e-9
 
 
+def test_a_neighbour_that_is_off_costs_its_own_distance_and_what_the_follower_makes_of_it(
+    paper: TargetFormation,
+) -> None:
+    settled = np.array([0.0, 0.0, 0.01, 0.0, 0.0, 0.0])
+    bound = neighbour_clearance(paper, paper.positions, paper.positions, settled)
+    assert bound[1] == pytest.approx(1.0 - 0.01 * (1.0 + np.sqrt(0.5)))
+
+
 def test_a_settled_agent_is_off_by_its_own_tolerance_and_what_its_neighbours_hand_down(paper: TargetFormation) -> None:
     found = settled_within(paper, 0.005)
     np.testing.assert_allclose(found[:3], [0.0, 0.0, 0.005])
