@@ -14,6 +14,7 @@ from formation.analysis.noise import noise_power, noise_rms
 from formation.design.candidates import Task, choose, evaluate, propose, unbeaten
 from formation.design.closure import best_leaders, fastest, quietest, shallow
 from formation.design.field import Field
+from formation.plane import as_complex, as_vectors
 
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -145,6 +146,16 @@ def test_candidates_have_the_figures_of_their_graphs_and_the_best_of_each_object
     assert again.settling == settling_of(Cascade.of(chosen, 1.0), start - end, task.bound)
     assert again.rate == pytest.approx(decay_rates(chosen).min())
     assert abs(delta) > 0.0
+
+
+def test_a_candidate_settles_where_its_task_sends_it() -> None:
+    places, factor = random_target(6, np.random.default_rng(5)).positions, 0.5 + 1.0j
+    field, there = Field.open(places), as_vectors(as_complex(places) * factor)
+    choice = fastest(field, (0, 1))[1]
+    arrived, left = (evaluate("", field, Task(there, "displacement", each), choice).settling for each in (factor, 1.0))
+    assert arrived is not None
+    assert left is not None
+    assert arrived <= 0.05 < 1.0 < left
 
 
 @pytest.mark.slow
