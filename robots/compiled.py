@@ -2,23 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import hashlib
+from collections.abc import Callable, Mapping
+from functools import cache
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
+from numba import config as numba_config
 from numba import njit
 
 F = TypeVar("F", bound=Callable[..., Any])
+
+_DISPATCHER = type(njit(lambda: None))
+
+_made_of: dict[Any, frozenset[str]] = {}  # compiled functions: the files whose code is in them
 
 
 def compiled(function: F) -> F:
     """Compile a function on its first call, and keep the machine code for the next process.
 
     It is kept beside the source, or in the user's cache; where neither can be written, it is compiled by every process.
+    Arithmetic is that of numpy: a division by zero gives an infinity or NaN and raises nothing, and no operation is
+    contracted or reordered, so that one run gives the same bits alone and among others.
     """
+    config: Any = numba_config
+    given = config.CACHE_DIR
+    config.CACHE_DIR = _folder(function, given)
     try:
-        return cast(F, njit(cache=True)(function))
+        made = njit(cache=True, error_model="numpy")(function)
     except RuntimeError:  # numba found no such folder
-        return cast(F, njit(function))
+        made = njit(error_model="numpy")(function)
+    finally:
+        config.CACHE_DIR = given
+    _made_of[made] = _sources(function)
+    return cast(F, made)
+
+
+def inlined(function: F) -> F:
+    """Compile a function into its callers, so that their loops over runs become vector instructions."""
+    made = njit(inline="always", error_model="numpy")(function)
+    _made_of[made] = _sources(function)
+    return cast(F, made)
 
 
 def at_hand(function: Callable[..., Any]) -> bool:
@@ -29,3 +53,31 @@ def at_hand(function: Callable[..., Any]) -> bool:
     # numba tells only after a call whether it found machine code of this source; the index that it would read says so.
     index = getattr(dispatcher._cache, "_cache_file", None)
     return index is not None and bool(index._load_index())
+
+
+def _sources(function: Callable[..., Any]) -> frozenset[str]:
+    """The files whose code a function may take in: its own, and those of all compiled functions that it can see."""
+    seen: Mapping[str, Any] = function.__globals__
+    files = {function.__code__.co_filename}
+    for thing in seen.values():
+        if isinstance(thing, _DISPATCHER) and thing in _made_of:
+            files |= _made_of[thing]
+    return frozenset(files)
+
+
+@cache
+def _content(file: str) -> bytes:
+    return hashlib.sha256(Path(file).read_bytes()).digest()
+
+
+def _folder(function: Callable[..., Any], given: str) -> str:
+    """Where to keep a function: by a digest of its files, so that what another version left there is not even opened.
+
+    numba itself looks at the time of one file alone, and cannot read what names a class that has moved.
+    """
+    files = sorted(_sources(function))
+    digest = hashlib.sha256()
+    for file in files:
+        digest.update(_content(file))
+    base = Path(given) if given else Path(function.__code__.co_filename).parent / "__pycache__"
+    return str(base / f"compiled-{digest.hexdigest()[:12]}")

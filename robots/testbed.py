@@ -112,6 +112,11 @@ def separation(centres: Real) -> Separation:
     return Separation(np.abs(np.ascontiguousarray(gap).view(np.complex128)[:, 0]), pairs)
 
 
+def fastest_allowed(drive: DifferentialDrive) -> float | Real:
+    """The wheel speed, rad/s, beyond which a command counts as beyond the limit; (n,) of robots that differ."""
+    return drive.wheel_speed_limit * (1.0 + _ROUNDING)
+
+
 def judge(
     t: Real,
     poses: Real,
@@ -137,7 +142,7 @@ def judge(
     if floor.obstacles:
         gaps = np.min([obstacle.distance(centres) for obstacle in floor.obstacles], axis=0)
         found.append(_violation("obstacle", t, gaps <= OBSTACLE_DISTANCE, gaps, -gaps, centres))
-    fast = speed > drive.wheel_speed_limit * (1.0 + _ROUNDING)
+    fast = speed > fastest_allowed(drive)
     found.append(_violation("actuator", t, fast, speed, speed, poses[..., :2]))
     return Verdict(tuple(violation for violation in found if violation is not None))
 

@@ -3,6 +3,7 @@
 __all__ = [
     "affine",
     "angle",
+    "angle_loop",
     "another_pair",
     "area",
     "base",

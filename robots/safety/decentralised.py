@@ -12,18 +12,9 @@ from robots.drive import DifferentialDrive
 from robots.nid import NearIdentityDiffeomorphism
 from robots.obstacles import Obstacle, pack
 from robots.safety import kernel
-from robots.safety.barrier import (
-    STUCK_PROGRESS,
-    STUCK_RECOVERY,
-    STUCK_TURN_LIMIT,
-    STUCK_TURN_RATE,
-    STUCK_WISH,
-    WHEEL_MARGIN,
-    FilterSettings,
-    stuck_limit,
-    turn_weight,
-)
+from robots.safety.barrier import FilterSettings
 from robots.safety.protocol import BLOCKERS, Noise, Real
+from robots.safety.rows import constants
 
 
 class DecentralisedFilter:
@@ -54,22 +45,7 @@ class DecentralisedFilter:
         settings: FilterSettings,
         arena: Arena | None = None,
     ) -> None:
-        self._constants = kernel.Constants(
-            safe_distance=float(settings.safe_distance),
-            sensing_range=float(settings.sensing_range),
-            clearance=float(settings.clearance),
-            gain=float(settings.gain),
-            turn=float(settings.turn),
-            stuck_time=float(settings.stuck_time),
-            stuck_limit=stuck_limit(settings),
-            stuck_progress=STUCK_PROGRESS,
-            stuck_wish=STUCK_WISH,
-            stuck_recovery=STUCK_RECOVERY,
-            stuck_turn_rate=STUCK_TURN_RATE,
-            stuck_turn_limit=STUCK_TURN_LIMIT,
-            speed_limits=np.array(np.broadcast_to(drive.speed_limit, shape[-1:])) * (1.0 - WHEEL_MARGIN),
-            turn_weights=np.array(np.broadcast_to(turn_weight(drive, nid), shape[-1:])),
-        )
+        self._constants = constants(settings, drive, nid, shape[-1])
         self._walls = np.empty((0, 3)) if arena is None else arena.wall_planes
         self._obstacles = pack(() if arena is None else arena.obstacles)
         batch = (int(np.prod(shape[:-1])), shape[-1])

@@ -1,195 +1,27 @@
-"""One step of the decentralised filter for all robots of all runs, compiled.
+"""One step of the decentralised filter for all robots of all runs, compiled, robot by robot.
 
-Everything that numba compiles is in this one file: its cache looks at the time stamp of the file that holds the
-function that is called, so a callee elsewhere could leave stale machine code behind. Three ideas, from the inside out:
-the exact two-variable solver, the neighbour search on a grid of cells, and the step itself.
-:mod:`robots.safety.barrier` derives the rows.
-
-A row (a_x, a_y, b) of the arrays below is the half-plane a.u >= b with |a| = 1. The first :data:`WHEEL_ROWS` rows are
-hard: the sides of the wheels' diamond.
+The neighbour search on a grid of cells, and the step itself. :mod:`robots.safety.barrier` derives the rows,
+:mod:`robots.safety.solver` solves them; :mod:`robots.safety.step` is the same step with runs side by side, and a test
+holds the two together.
 """
 
-# Longer than 300 lines: what numba compiles together has to stand in one file, see above.
-
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robots.compiled import compiled
 from robots.safety.protocol import BLOCKERS, WALLS
+from robots.safety.rows import MOST as _MOST
+from robots.safety.rows import Constants as Constants
+from robots.safety.solver import RELAXED as _RELAXED
+from robots.safety.solver import WHEEL_ROWS as WHEEL_ROWS
+from robots.safety.solver import project as project
+from robots.safety.solver import wheel_rows as wheel_rows
+from robots.safety.things import nearest_on_obstacle as nearest_on_obstacle
 
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
-Count = int | np.int64
-
-WHEEL_ROWS = 4
-"""The diamond |u_x| + r |u_y| <= L has four sides."""
-
-_PARALLEL = 1e-12  # sine of the angle between two rows that are taken as parallel
-_TIGHT = 1e-12  # m/s by which rounding may break a row
-_RELAXED = 1e-9  # m/s below which a relaxation is rounding
-_MOST = 1e6  # m/s: no wish and no row counts for more, so that all sums and quotients of them are finite
-
-
-class Constants(NamedTuple):
-    """What does not change during a run; lengths in metres, speeds in m/s, times in seconds, angles in radians."""
-
-    safe_distance: float
-    sensing_range: float
-    clearance: float
-    gain: float
-    turn: float
-    stuck_time: float
-    stuck_limit: float
-    stuck_progress: float
-    stuck_wish: float
-    stuck_recovery: float
-    stuck_turn_rate: float
-    stuck_turn_limit: float
-    speed_limits: Real
-    turn_weights: Real
-
-
-@compiled
-def _interval(rows: Real, count: Count, px: float, py: float, tx: float, ty: float) -> tuple[float, float, bool]:
-    """The part [low, high] of the line p + s t that satisfies the first ``count`` rows, and whether there is one."""
-    low, high = -np.inf, np.inf
-    for j in range(count):
-        slope = rows[j, 0] * tx + rows[j, 1] * ty
-        gap = rows[j, 2] - rows[j, 0] * px - rows[j, 1] * py
-        if abs(slope) <= _PARALLEL:
-            if gap > _TIGHT:
-                return 0.0, 0.0, False
-        elif slope > 0.0:
-            low = max(low, gap / slope)
-        else:
-            high = min(high, gap / slope)
-    if low > high:
-        if low - high > _TIGHT:
-            return 0.0, 0.0, False
-        low = high = 0.5 * (low + high)  # three rows through one point, up to rounding
-    return low, high, True
-
-
-@compiled
-def _nearest(rows: Real, count: Count, x0: float, y0: float) -> tuple[float, float, bool]:
-    """The point nearest to (x0, y0) that satisfies the first ``count`` rows, and whether there is one.
-
-    Incremental (Seidel 1991): while a row holds at the optimum of the rows before it nothing changes; when it does not,
-    the new optimum lies on its line, and the rows before it leave an interval of that line.
-    """
-    x, y = x0, y0
-    for i in range(count):
-        ax, ay, b = rows[i, 0], rows[i, 1], rows[i, 2]
-        if ax * x + ay * y >= b - _TIGHT:
-            continue
-        to_line = b - ax * x0 - ay * y0
-        px, py = x0 + to_line * ax, y0 + to_line * ay
-        low, high, found = _interval(rows, i, px, py, -ay, ax)
-        if not found:
-            return x, y, False
-        s = min(max(0.0, low), high)
-        x, y = px - s * ay, py + s * ax
-    return x, y, True
-
-
-@compiled
-def _farthest(rows: Real, count: Count, cx: float, cy: float, x: float, y: float) -> tuple[float, float]:
-    """The point farthest along c that satisfies the first ``count`` rows, given the one (x, y) of the wheel rows."""
-    for i in range(WHEEL_ROWS, count):
-        ax, ay, b = rows[i, 0], rows[i, 1], rows[i, 2]
-        if ax * x + ay * y >= b - _TIGHT:
-            continue
-        to_line = b - ax * x - ay * y
-        px, py = x + to_line * ax, y + to_line * ay
-        low, high, found = _interval(rows, i, px, py, -ay, ax)
-        if not found:  # only rounding can get here: the caller's rows have a common point
-            continue
-        along = cy * ax - cx * ay
-        s = high if along > 0.0 else low
-        x, y = px - s * ay, py + s * ax
-    return x, y
-
-
-@compiled
-def _least_relaxation(
-    rows: Real, count: Count, work: Real, speed: float, weight: float, x: float, y: float
-) -> tuple[float, float, float]:
-    """The point within the wheels' diamond that breaks the other rows least, and by how much, m/s.
-
-    Incremental in the three variables u and delta, rows a.u >= b - delta: when a row is broken at (u, delta), the new
-    optimum has delta = b - a.u, which leaves a linear programme in u.
-
-    Args:
-        rows: the rows, wheel rows first.
-        count: how many there are.
-        work: scratch of the shape of ``rows``.
-        speed, weight: L and r of the diamond.
-        x, y: a point of the diamond.
-    """
-    delta = 0.0
-    work[:WHEEL_ROWS] = rows[:WHEEL_ROWS]
-    for i in range(WHEEL_ROWS, count):
-        ax, ay, b = rows[i, 0], rows[i, 1], rows[i, 2]
-        if b - ax * x - ay * y <= delta + _TIGHT:
-            continue
-        used = np.int64(WHEEL_ROWS)
-        for j in range(WHEEL_ROWS, i):
-            dx, dy = rows[j, 0] - ax, rows[j, 1] - ay
-            length = np.hypot(dx, dy)
-            if length > _PARALLEL:  # of two parallel rows the later one is the stricter, it is broken
-                work[used, 0], work[used, 1], work[used, 2] = dx / length, dy / length, (rows[j, 2] - b) / length
-                used += 1
-        if abs(ax) * weight >= abs(ay):
-            corner_x, corner_y = np.copysign(speed, ax), 0.0
-        else:
-            corner_x, corner_y = 0.0, np.copysign(speed / weight, ay)
-        x, y = _farthest(work, used, ax, ay, corner_x, corner_y)
-        delta = max(delta, b - ax * x - ay * y)
-    return x, y, delta
-
-
-@compiled
-def wheel_rows(rows: Real, speed: float, weight: float) -> None:
-    """Write the sides of the diamond |u_x| + weight |u_y| <= speed into the first rows."""
-    norm = np.hypot(1.0, weight)
-    for side in range(WHEEL_ROWS):
-        rows[side, 0] = (1.0 if side % 2 else -1.0) / norm
-        rows[side, 1] = (weight if side // 2 else -weight) / norm
-        rows[side, 2] = -speed / norm
-
-
-@compiled
-def project(
-    rows: Real, count: Count, work: Real, speed: float, weight: float, x0: float, y0: float
-) -> tuple[float, float, float]:
-    """The point nearest to (x0, y0) that satisfies the rows; the least relaxation if none does.
-
-    Args:
-        rows: (m, 3) unit rows, the first of them from :func:`wheel_rows`. Where no point satisfies all, the thresholds
-            of all others are lowered by the relaxation.
-        count: how many rows there are.
-        work: scratch of the shape of ``rows``.
-        speed, weight: L in m/s and r of the diamond.
-        x0, y0: the point wished for, m/s.
-
-    Returns:
-        The point, m/s, and the relaxation: 0, or the least by which all rows but the wheels' are to be lowered, m/s.
-    """
-    x, y, found = _nearest(rows, count, x0, y0)
-    if found:
-        return x, y, 0.0
-    x, y, _ = _nearest(rows, np.int64(WHEEL_ROWS), x0, y0)
-    x, y, delta = _least_relaxation(rows, count, work, speed, weight, x, y)
-    for i in range(WHEEL_ROWS, count):
-        rows[i, 2] -= delta
-    nearer_x, nearer_y, found = _nearest(rows, count, x0, y0)
-    if found:
-        x, y = nearer_x, nearer_y
-    return x, y, delta if delta > _RELAXED else 0.0
 
 
 @compiled
@@ -230,44 +62,6 @@ def _fill_grid(points: Real, side: float, cells: Index, first: Index, order: Ind
         if b >= 0:
             first[b] -= 1  # from the end of the bucket down to its start
             order[first[b]] = i
-
-
-@compiled
-def nearest_on_obstacle(vertices: Real, x: float, y: float) -> tuple[float, float, float]:
-    """Signed distance, metres, from a convex core to (x, y), and the unit vector from the core to the point.
-
-    The core is a point, a segment, or a polygon with its vertices counter-clockwise; inside a polygon the distance is
-    negative.
-    """
-    count = len(vertices)
-    best, bx, by = np.inf, 0.0, 0.0
-    inside = count > 2
-    depth, ox, oy = -np.inf, 0.0, 0.0
-    edges = count if count > 2 else 1
-    for k in range(edges):
-        ax, ay = vertices[k, 0], vertices[k, 1]
-        after = (k + 1) % count
-        ex, ey = vertices[after, 0] - ax, vertices[after, 1] - ay
-        dx, dy = x - ax, y - ay
-        length2 = ex * ex + ey * ey
-        s = min(max((dx * ex + dy * ey) / length2, 0.0), 1.0) if length2 > 0.0 else 0.0
-        qx, qy = dx - s * ex, dy - s * ey
-        distance2 = qx * qx + qy * qy
-        if distance2 < best:
-            best, bx, by = distance2, qx, qy
-        if count > 2:
-            length = np.sqrt(length2)
-            outward = (ey * dx - ex * dy) / length
-            if not outward <= 0.0:  # also where a point is so far off that its products overflow
-                inside = False
-            if outward > depth:
-                depth, ox, oy = outward, ey / length, -ex / length
-    if inside:
-        return depth, ox, oy
-    distance = np.sqrt(best)
-    if distance == 0.0:
-        return 0.0, ox, oy
-    return distance, bx / distance, by / distance
 
 
 @compiled

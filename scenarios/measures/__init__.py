@@ -7,6 +7,7 @@ __all__ = [
     "happenings",
     "late_rates",
     "metrics",
+    "online",
     "predictions",
     "result",
     "safety_result",

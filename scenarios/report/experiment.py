@@ -19,6 +19,7 @@ from scenarios.report.cells import NO_PREDICTION, chosen, digits, place
 from scenarios.report.closed_forms import print_closed_forms
 from scenarios.report.course import print_course
 from scenarios.report.happenings import print_plan
+from scenarios.simulation.compiled.ability import unable
 from scenarios.terminal import new_table, print_table
 
 
@@ -42,6 +43,9 @@ def print_experiment(console: Console, experiment: Experiment, seed: int) -> Non
     print_closed_forms(console, experiment, start)
     for remark in remarks(experiment, seed):
         console.print(escape(remark), style="bold")
+    reason = unable(experiment)
+    how = "whole periods of many runs are one compiled call" if reason is None else f"stepped by Python, {reason}"
+    console.print(escape(f"\nsweep: {how}"))
     table = new_table("angle", "target (deg)")
     for name, value in zip(experiment.angle_names, np.degrees(experiment.target_angles), strict=True):
         table.add_row(name, f"{value:.4f}")

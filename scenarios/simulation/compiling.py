@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
@@ -35,6 +35,16 @@ def compile_filter(name: str = "decentralised") -> None:
     safety = make_filter(name, (1,), GTERNAL.drive, nid, FilterSettings())
     if safety is not None:
         safety.filter(still, ahead, still, still, CONTROL_PERIOD)
+
+
+def compile_whole(plant: str, run: Callable[[], object]) -> None:
+    """Compile the whole period of a plant, and what looks at it, by a ``run``, where no machine code is at hand."""
+    from robots.compiled import at_hand
+    from scenarios.simulation.compiled import period
+
+    if not at_hand(period.integrate if plant == "single_integrator" else period.advance):
+        print(ANNOUNCEMENT, file=sys.stderr, flush=True)
+        run()
 
 
 def compile_filters(scenarios: Iterable[Scenario]) -> None:

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import pairwise
 
+import numpy as np
+from numpy.typing import NDArray
+
 from formation import Phase
 from scenarios.definition.events.event import SAME_TIME
 from scenarios.definition.experiment import Experiment
@@ -66,3 +69,9 @@ def periods(phase: Phase, control_period: float) -> tuple[int, float]:
 def count_periods(experiment: Experiment) -> int:
     """How many control periods a run has."""
     return sum(part.count for part in schedule(experiment))
+
+
+def times(experiment: Experiment) -> NDArray[np.float64]:
+    """(T,) when each control period of a run ends, seconds, and its start before them."""
+    ends = [part.start + part.duration * (np.arange(1, part.count + 1) / part.count) for part in schedule(experiment)]
+    return np.concatenate([[0.0], *ends])

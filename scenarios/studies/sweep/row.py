@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,10 @@ from scenarios.definition.experiment import Experiment, build
 from scenarios.errors import InputError
 from scenarios.measures.clearance import Clearance
 from scenarios.measures.metrics import measure
+from scenarios.measures.online.watch import Achieved, Watch
 from scenarios.measures.window import Window
+from scenarios.simulation.compiled.ability import unable
+from scenarios.simulation.compiled.runs import Runs
 from scenarios.simulation.loop import simulate
 from scenarios.simulation.trajectory import Trajectory
 from scenarios.studies.sweep.study import Batch
@@ -22,6 +25,9 @@ RUN_COLUMNS = 3
 
 FAILED = "failed"
 """The outcome of a run that could not be made to its end."""
+
+PERIODS = 16
+"""Control periods between two looks at compiled runs: their states then still lie in the processor's cache."""
 
 LONGEST_MESSAGE = 300
 """Characters of what went wrong."""
@@ -51,12 +57,15 @@ class Row:
 
     def cells(self, varied: Sequence[str]) -> list[Any]:
         """The row as it is written."""
-        return _with_varied(list(asdict(self).values()), varied)
+        return _with_varied([getattr(self, name) for name in NAMES], varied)
+
+
+NAMES = tuple(field.name for field in fields(Row))
 
 
 def columns(varied: Sequence[str]) -> list[str]:
     """The names above the rows."""
-    return _with_varied([field.name for field in fields(Row)], varied)
+    return _with_varied(list(NAMES), varied)
 
 
 def _with_varied(cells: list[Any], varied: Sequence[str]) -> list[Any]:
@@ -69,15 +78,53 @@ def run_batch(batch: Batch) -> list[Row]:
         experiment = build(batch.combination.file, batch.combination.duration)
     except Exception as error:
         return [_failed(batch, seed, error) for seed in batch.seeds]
+    if unable(experiment) is None:
+        watched = _watched(experiment, batch.seeds)
+        return [
+            _alone(batch, experiment, seed) if achieved is None else _told(experiment, seed, achieved)
+            for seed, achieved in zip(batch.seeds, watched, strict=True)
+        ]
     together = _together(experiment, batch.seeds) if len(batch.seeds) > 1 else None
-    rows = []
-    for index, seed in enumerate(batch.seeds):
-        try:
-            alone = simulate(experiment, seed) if together is None else together.run(index)
-            rows.append(_row(experiment, seed, alone))
-        except Exception as error:
-            rows.append(_failed(batch, seed, error))
-    return rows
+    return [
+        _alone(batch, experiment, seed, None if together is None else together.run(index))
+        for index, seed in enumerate(batch.seeds)
+    ]
+
+
+def _alone(batch: Batch, experiment: Experiment, seed: int, trajectory: Trajectory | None = None) -> Row:
+    """The row of a run that is measured by itself, and made where there is no trajectory."""
+    try:
+        return _row(experiment, seed, simulate(experiment, seed) if trajectory is None else trajectory)
+    except Exception as error:
+        return _failed(batch, seed, error)
+
+
+def _watched(experiment: Experiment, seeds: Sequence[int]) -> Sequence[Achieved | None]:
+    """What compiled runs achieve, measured on their way; None for those that have to be made by themselves."""
+    try:
+        runs = Runs(experiment, seeds)
+        watch = Watch(experiment, runs.state)
+        for chunk in runs.advance(PERIODS):
+            watch.take(chunk)
+        return watch.achieved()
+    except Exception:  # made one by one, the runs tell which of them it was
+        return [None] * len(seeds)
+
+
+def _told(experiment: Experiment, seed: int, achieved: Achieved) -> Row:
+    """The row of a run that was watched."""
+    return Row(
+        scenario=experiment.file.name,
+        plant=experiment.plant,
+        seed=seed,
+        outcome=achieved.outcome,
+        angle_error_sum_rad=_finite(achieved.error_sum),
+        axle_angle_error_sum_rad=_finite(achieved.axle_error_sum),
+        settling_time_s=achieved.settling_time,
+        min_separation_m=_finite(achieved.separation),
+        accepted=achieved.accepted,
+        violations=" ".join(achieved.violations),
+    )
 
 
 def _together(experiment: Experiment, seeds: Sequence[int]) -> Trajectory | None:

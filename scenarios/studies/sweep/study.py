@@ -15,6 +15,7 @@ from scenarios.definition.experiment import Experiment, open_experiment, require
 from scenarios.definition.load import ScenarioFile
 from scenarios.errors import InputError
 from scenarios.measures.result import versions
+from scenarios.simulation.compiled.ability import unable
 from scenarios.simulation.schedule import count_periods
 from scenarios.studies.project import PROJECT
 from scenarios.studies.sweep.seeds import Seeds
@@ -25,6 +26,12 @@ SINGLE = "pymunk"
 
 BATCH_STATES = 1_000_000
 """Robots times control periods that advance as one array: some 60 MB of states."""
+
+LANES = 768
+"""Robots of compiled runs that advance side by side, run by run."""
+
+MOST_TOGETHER = 64
+"""Robots of a run up to which compiled runs advance side by side; larger ones search for neighbours, each by itself."""
 
 MOST_BATCHED = 100
 """Runs in one batch; more are no faster and make progress coarse."""
@@ -41,6 +48,7 @@ class Combination:
         safety: the filter of its runs.
         batch_size: runs that are made together.
         duration: seconds to run, where it is not the scenario's own.
+        compiled: whether whole periods of many runs are one compiled call.
     """
 
     changes: tuple[str, ...]
@@ -49,6 +57,7 @@ class Combination:
     safety: str
     batch_size: int
     duration: float | None = None
+    compiled: bool = False
 
 
 @dataclass(frozen=True)
@@ -150,14 +159,16 @@ def open_study(
             experiment.initial_points(seeds.first)
         except InputError as error:
             raise InputError(f"{error} (seed {seeds.first})") from error
-        size = batch_size(experiment)
-        found.append(Combination(varied, values, experiment.file, experiment.safety, size, duration))
+        size, whole = batch_size(experiment), unable(experiment) is None
+        found.append(Combination(varied, values, experiment.file, experiment.safety, size, duration, whole))
     return Study(changes, tuple(variations), tuple(found), seeds, duration)
 
 
 def batch_size(experiment: Experiment) -> int:
-    """Runs that are made together: many on a plant without contact, one on pymunk."""
+    """Runs that are made together: many on a plant without contact, one on pymunk; their states are kept or watched."""
     if experiment.plant == SINGLE:
         return 1
+    if unable(experiment) is None:
+        return max(1, min(MOST_BATCHED, LANES // experiment.n)) if experiment.n <= MOST_TOGETHER else 1
     states = experiment.n * count_periods(experiment)
     return max(1, min(MOST_BATCHED, BATCH_STATES // states))

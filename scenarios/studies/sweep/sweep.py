@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from scenarios.errors import InputError
-from scenarios.simulation.compiling import compile_filters
+from scenarios.simulation.compiling import compile_filters, compile_whole
 from scenarios.studies.sweep import folder as place
 from scenarios.studies.sweep.row import run_batch
-from scenarios.studies.sweep.study import Study
+from scenarios.studies.sweep.study import Batch, Study
 from scenarios.studies.sweep.summary import QUANTILES, Summary, summarise
 from scenarios.work.protocol import Spread
 
@@ -55,7 +56,7 @@ def sweep(
             kept = done = place.begin(folder, study, restart)
             on_progress(done, study.runs)
             if done < study.runs:
-                compile_filters(combination.file.scenario for combination in study.combinations)
+                _compile(study)
                 for batch, rows in zip(study.batches(done), run_all(run_batch, study.batches(done)), strict=True):
                     place.append(folder, batch, rows)
                     done += len(rows)
@@ -68,6 +69,15 @@ def sweep(
     except OSError as error:
         raise InputError(f"--out {folder}: cannot be written: {error.strerror or error}") from error
     return Swept(summaries, folder, kept)
+
+
+def _compile(study: Study) -> None:
+    """Compile what the runs need before they spread over processes: each would do it again."""
+    compile_filters(each.file.scenario for each in study.combinations if not each.compiled)
+    for each in {each.file.scenario.plant.name: each for each in study.combinations if each.compiled}.values():
+        scenario = each.file.scenario
+        short = replace(each, duration=scenario.plant.control_period_s)
+        compile_whole(scenario.plant.name, partial(run_batch, Batch(short, (study.seeds.first,))))
 
 
 def _summary_file(study: Study, summaries: Sequence[Summary]) -> dict[str, Any]:

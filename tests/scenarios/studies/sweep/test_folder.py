@@ -187,14 +187,20 @@ def test_a_second_writer_is_refused_and_a_killed_one_leaves_no_lock_behind(
 
 def test_a_run_that_raises_is_a_row_and_the_others_go_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(study, "MOST_BATCHED", 2)
-    simulate = row.simulate
+    simulate, runs = row.simulate, row.Runs
 
     def simulate_or_raise(experiment: Any, seed: Any) -> Any:
         if seed == 3 or (not isinstance(seed, int) and 3 in seed):
             raise ZeroDivisionError("0\n/\t0, \x1b[31mred")
         return simulate(experiment, seed)
 
+    def advance_or_raise(experiment: Any, seeds: Any) -> Any:
+        if 3 in seeds:
+            raise ZeroDivisionError
+        return runs(experiment, seeds)
+
     monkeypatch.setattr(row, "simulate", simulate_or_raise)
+    monkeypatch.setattr(row, "Runs", advance_or_raise)
     made = study_of("0:5", vary=("plant.name=saturated,pymunk",))
     swept = run(made, tmp_path)
     found = list(place.read_rows(tmp_path))

@@ -1,0 +1,135 @@
+"""Control periods of many runs, compiled: sense, law, v_r, safety filter, NID, wheels, state.
+
+The law comes from ``formation``, the filter and the drive from ``robots``; here they are only put in order. Nothing
+here looks at what the runs achieve.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from formation.laws import angle_loop
+from formation.laws.angle_loop import Gains
+from robots.compiled import compiled
+from robots.safety.rows import Constants, Noise, Things
+from robots.safety.step import Code, filter_step
+from robots.worlds.lanes import COS, GX, GY, NOW, PX, PY, SIN, UX, UY, VX, VY, Wheels, X, Y, roll
+
+Real = NDArray[np.float64]
+
+
+class Commands(NamedTuple):
+    """What a phase commands: v_r (m/s) and delta (m), in the common frame, and the control period, seconds."""
+
+    velocity_x: float
+    velocity_y: float
+    delta_x: float
+    delta_y: float
+    period: float
+
+
+class Guard(NamedTuple):
+    """The safety filter; ``present`` is False for none."""
+
+    present: bool
+    constants: Constants
+    things: Things
+    noise: Noise
+
+
+_feedback = compiled(angle_loop.feedback)
+
+
+@compiled
+def advance(
+    state: Real, rows: Real, blockers: Code, law: Gains, commands: Commands, guard: Guard, wheels: Wheels
+) -> None:
+    """As many control periods as ``rows`` has room for, of robots with wheels.
+
+    Args:
+        state: (FIELDS, n, L), advanced in place; see :mod:`robots.worlds.lanes`.
+        rows: (K, F, n, L) out: the first F fields of the state after each period.
+        blockers: (K, n, L, 3) out, see :func:`robots.safety.step.filter_step`; or (1, n, L, 3) for the last period's.
+    """
+    for k in range(len(rows)):
+        _obey(state, law, commands)
+        if guard.present:
+            after = blockers[k % len(blockers)]
+            filter_step(state, after, commands.period, NOW, guard.constants, guard.things, guard.noise)
+        else:
+            _command(state)
+        roll(state, wheels, commands.period)
+        rows[k] = state[: rows.shape[1]]
+
+
+@compiled
+def integrate(state: Real, rows: Real, law: Gains, commands: Commands) -> None:
+    """The same of points that move as they will, dp/dt = u, by the classical Runge-Kutta method of order four."""
+    h = commands.period
+    start, total, slope = np.empty((3, 2, *state.shape[1:]))
+    for k in range(len(rows)):
+        start[:] = state[PX : PY + 1]
+        for stage in range(4):
+            _obey(state, law, commands)
+            _command(state)
+            _turn_out(state, slope)
+            if stage == 0:
+                total[:] = slope
+                _go(state, start, slope, h / 2.0)
+            elif stage < 3:
+                _add(total, slope, 2.0)
+                _go(state, start, slope, h / 2.0 if stage == 1 else h)
+            else:
+                _add(total, slope, 1.0)
+        _go(state, start, total, h / 6.0)
+        state[X : Y + 1] = state[PX : PY + 1]
+        rows[k] = state[: rows.shape[1]]
+
+
+@compiled
+def _obey(state: Real, law: Gains, commands: Commands) -> None:
+    """What the law and the commanded v_r ask of each robot, in its body frame."""
+    px, py, c, s, gx, gy = state[PX], state[PY], state[COS], state[SIN], state[GX], state[GY]
+    _feedback(px, py, c, s, px, py, law, commands.delta_x, commands.delta_y, gx, gy)
+    vx, vy = commands.velocity_x, commands.velocity_y
+    for i in range(state.shape[1]):
+        for m in range(state.shape[2]):
+            state[VX, i, m], state[VY, i, m] = vx * c[i, m] + vy * s[i, m], vy * c[i, m] - vx * s[i, m]
+
+
+@compiled
+def _command(state: Real) -> None:
+    """Command what is asked, as it is."""
+    for i in range(state.shape[1]):
+        for m in range(state.shape[2]):
+            state[UX, i, m] = state[GX, i, m] + state[VX, i, m]
+            state[UY, i, m] = state[GY, i, m] + state[VY, i, m]
+
+
+@compiled
+def _turn_out(state: Real, slope: Real) -> None:
+    """The commands in the common frame."""
+    for i in range(state.shape[1]):
+        for m in range(state.shape[2]):
+            ux, uy, c, s = state[UX, i, m], state[UY, i, m], state[COS, i, m], state[SIN, i, m]
+            slope[0, i, m], slope[1, i, m] = ux * c - uy * s, ux * s + uy * c
+
+
+@compiled
+def _go(state: Real, start: Real, slope: Real, step: float) -> None:
+    """Place the points at ``start`` plus ``step`` times ``slope``."""
+    for axis in range(2):
+        for i in range(state.shape[1]):
+            for m in range(state.shape[2]):
+                state[PX + axis, i, m] = start[axis, i, m] + step * slope[axis, i, m]
+
+
+@compiled
+def _add(total: Real, slope: Real, times: float) -> None:
+    for axis in range(2):
+        for i in range(total.shape[1]):
+            for m in range(total.shape[2]):
+                total[axis, i, m] += times * slope[axis, i, m]
