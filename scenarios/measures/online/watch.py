@@ -70,7 +70,7 @@ class Watch:
         rows, experiment = chunk.rows, self._experiment
         watching.last_above(rows, chunk.first, self._angles, self._last_above, self._doubtful)
         watching.beyond_floor(rows, self._floor, self._off_floor)
-        watching.beyond_wheels(rows, fastest_allowed(experiment.robot.drive), self._fast)
+        watching.beyond_wheels(rows, float(fastest_allowed(experiment.robot.drive)), self._fast)
         centres = rows if _ahead_as_checked(experiment) else self._centred(rows)
         watching.nearest(centres, self._least)
         if experiment.arena.obstacles:

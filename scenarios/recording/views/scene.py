@@ -3,6 +3,8 @@
 Everything lies below one entity that mirrors y, because the viewer's second axis points down and ours up.
 """
 
+# Longer than 300 lines: one entity has all that is drawn on the floor, in one order.
+
 from __future__ import annotations
 
 from collections.abc import Sequence
