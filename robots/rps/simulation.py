@@ -89,30 +89,27 @@ class Simulation:
         )
         self._observe()
         self.motion = np.zeros((len(poses), 2))
-        self._poses = [self._world.poses.copy()]
-        self._commands = [np.zeros((len(poses), 2))]
-        self._contacts = [self._world.contacts.copy()]
+        # Poses, commanded twists and contacts of a moment in one place: an interrupt between two lists would part them.
+        self._rows = [(self._world.poses.copy(), np.zeros((len(poses), 2)), self._world.contacts.copy())]
 
     @property
     def poses(self) -> Real:
         """(N, 3) of the axles, headings not wrapped."""
-        return self._poses[-1]
+        return self._rows[-1][0]
 
     @property
     def steps(self) -> int:
         """Periods since the start."""
-        return len(self._poses) - 1
+        return len(self._rows) - 1
 
     def step(self, twist: Real) -> None:
         """Advance by one control period at commanded twists (N, 2)."""
-        before, velocity = self._poses[-1], _NID.velocity(self._compensated(twist))
+        before, velocity = self.poses, _NID.velocity(self._compensated(twist))
         self._world.step(lambda points, headings, elapsed: velocity, CONTROL_PERIOD)
         after = self._world.poses.copy()
         self.motion = _motion(before, after)
         self._observe()
-        self._poses.append(after)
-        self._commands.append(np.array(twist))
-        self._contacts.append(self._world.contacts.copy())
+        self._rows.append((after, np.array(twist), self._world.contacts.copy()))
 
     def _compensated(self, twist: Real) -> Real:
         """(N, 2) what to command so that axles move as ``twist`` (N, 2) says.
@@ -135,15 +132,9 @@ class Simulation:
 
     def recorded(self) -> Record:
         """All that happened so far."""
-        steps = len(self._poses)  # rows of one moment: another thread may be stepping
-        commands = np.stack(self._commands[:steps])
-        return Record(
-            CONTROL_PERIOD * np.arange(steps, dtype=np.float64),
-            np.stack(self._poses[:steps]),
-            commands,
-            self._robot.drive.wheel_speeds(commands),
-            np.stack(self._contacts[:steps]),
-        )
+        poses, commands, contacts = map(np.stack, zip(*self._rows[:], strict=True))  # another thread may be stepping
+        t = CONTROL_PERIOD * np.arange(len(poses), dtype=np.float64)
+        return Record(t, poses, commands, self._robot.drive.wheel_speeds(commands), contacts)
 
 
 def _motion(before: Real, after: Real) -> Real:

@@ -37,6 +37,11 @@ LATER_KEYS = (
     ("sensor", "field_of_view_deg"),
     ("events",),
     ("goal", "distance_m"),
+    ("law", "gain"),
+    ("leaders",),
+    ("sensor", "own_motion"),
+    ("sensor", "gyro_noise_deg_s"),
+    ("sensor", "encoder_noise_m_s"),
 )
 """Keys that came after the first baselines: at their defaults they are not in a scenario's digest."""
 
@@ -57,11 +62,12 @@ def digest(content: Mapping[str, Any], own_law: LawFile | None) -> str:
 def without_later_keys(data: dict[str, Any]) -> None:
     """Take the keys of :data:`LATER_KEYS` that have their defaults out of a scenario's dumped ``data``.
 
-    An agent without a robot of its own likewise has no such key.
+    An agent without a robot or a gain of its own likewise has no such key.
     """
     for agent in data.get("agents", ()):
-        if agent.get("robot", ()) is None:
-            del agent["robot"]
+        for key in ("robot", "gain"):
+            if agent.get(key, ()) is None:
+                del agent[key]
     for *tables, key in LATER_KEYS:
         place: Any = data
         model: type[BaseModel] = Scenario

@@ -58,7 +58,7 @@ def test_late_rates_are_predicted(name: str, plant: str, changes: tuple[str, ...
     worst, median, count = off(experiment, 0)
     print(f"late rates, {name}, {plant}, filter {safety}: worst {worst:.2%}, median {median:.3%} of {count}")
     assert count > 0
-    assert median <= 0.001
+    assert median <= (0.001 if safety == "none" else 0.01)
     assert worst <= (0.02 if safety == "none" else 0.05)
 
 

@@ -18,6 +18,8 @@ TITLES = {
     "settling_time_s": "settling time (s)",
     "angle_error_sum_rad": "angle error sum (rad)",
     "min_separation_m": "least separation (m)",
+    "min_clearance_m": "least clearance (m)",
+    "min_hull_clearance_m": "hull's clearance (m)",
 }
 
 LOGARITHMIC = ("angle_error_sum_rad",)

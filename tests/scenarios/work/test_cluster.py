@@ -238,7 +238,7 @@ def test_a_missing_package_is_told_with_the_extra_that_has_it(monkeypatch: pytes
 
     monkeypatch.setattr(builtins, "__import__", without_dask)
     with (
-        pytest.raises(InputError, match=r"pip install 'angle-formation\[cluster\]'"),
+        pytest.raises(InputError, match=r"package distributed, the extra 'cluster' of angle-formation"),
         cluster.connected("tcp://a:1", PROJECT),
     ):
         pass
