@@ -114,7 +114,7 @@ def cli(
         except SystemExit as end:
             code = end.code if isinstance(end.code, int) else DONE
         out, err = capsys.readouterr()
-        # On a machine where nothing ran yet, whichever test compiles first would find the word that test_machine.py tests.
+        # On a fresh machine whichever test compiles first would find the word that test_machine.py tests.
         return code, out, err.removeprefix(f"{ANNOUNCEMENT}\n")
 
     return run
