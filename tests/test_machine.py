@@ -20,9 +20,9 @@ import warnings
 from numba.core import caching
 caching.CacheImpl._locator_classes = []  # as numba finds them: nothing can be written
 warnings.simplefilter("error")
-from robots.safety import kernel
+from robots.safety import kernel, solver
 from robots.compiled import at_hand
-print(at_hand(kernel.step), kernel._within_wheels(0.3, 0.0, 0.0, 0.0, 0.2, 2.2))
+print(at_hand(kernel.step), solver.within_wheels(0.3, 0.0, 0.0, 0.0, 0.2, 2.2))
 """
 
 

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.compiled import compiled
-from robots.worlds.lanes import Senses
 
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -20,8 +19,8 @@ _FARTHEST = 1e9  # cells from the origin, beyond which all share one: numbers of
 
 
 @compiled
-def fill_grid(state: Real, senses: Senses, side: float, cells: Index, first: Index, order: Index) -> None:
-    """Sort the robots of one run into cells of a side, metres: ``order[first[b]:first[b + 1]]`` is bucket b.
+def fill_grid(x: Real, y: Real, side: float, cells: Index, first: Index, order: Index) -> None:
+    """Sort robots at x and y (n,) into cells of a side, metres: ``order[first[b]:first[b + 1]]`` is bucket b.
 
     Cells are hashed into buckets, which keeps the grid as small as the crowd, however far a robot strays. A robot
     without a finite position is in no bucket: nobody can sense it.
@@ -34,10 +33,9 @@ def fill_grid(state: Real, senses: Senses, side: float, cells: Index, first: Ind
     n, size = len(cells), len(first) - 1
     first[:] = 0
     for i in range(n):
-        x, y = state[senses.others, i, 0], state[senses.others + 1, i, 0]
         cells[i, 2] = -1
-        if math.isfinite(x) and math.isfinite(y):
-            cells[i, 0], cells[i, 1] = _cell(x, side), _cell(y, side)
+        if math.isfinite(x[i]) and math.isfinite(y[i]):
+            cells[i, 0], cells[i, 1] = _cell(x[i], side), _cell(y[i], side)
             cells[i, 2] = _bucket(cells[i, 0], cells[i, 1], size)
             first[cells[i, 2]] += 1
     for b in range(size):
@@ -50,12 +48,9 @@ def fill_grid(state: Real, senses: Senses, side: float, cells: Index, first: Ind
 
 
 @compiled
-def near(
-    state: Real, senses: Senses, side: float, i: int, cells: Index, first: Index, order: Index, found: Index
-) -> int:
-    """Write the robots of the nine cells around robot i into ``found``, in the order of rows; their number."""
+def around(x: float, y: float, side: float, i: int, cells: Index, first: Index, order: Index, found: Index) -> int:
+    """Write the robots of the nine cells around robot i at (x, y) into ``found``, cell by cell; their number."""
     size, count = len(first) - 1, 0
-    x, y = state[senses.own, i, 0], state[senses.own + 1, i, 0]
     if not (math.isfinite(x) and math.isfinite(y)):
         return 0
     column, line = _cell(x, side), _cell(y, side)
@@ -64,15 +59,21 @@ def near(
         b = _bucket(cx, cy, size)
         for place in range(first[b], first[b + 1]):
             j = order[place]
-            if j == i or cells[j, 0] != cx or cells[j, 1] != cy:
-                continue
-            into = count
-            while into > 0 and found[into - 1] > j:
-                found[into] = found[into - 1]
-                into -= 1
-            found[into] = j
-            count += 1
+            if j != i and cells[j, 0] == cx and cells[j, 1] == cy:
+                found[count] = j
+                count += 1
     return count
+
+
+@compiled
+def in_rows(found: Index, count: int) -> None:
+    """Put the first ``count`` robots of ``found`` into the order of rows."""
+    for last in range(1, count):
+        j, into = found[last], last
+        while into > 0 and found[into - 1] > j:
+            found[into] = found[into - 1]
+            into -= 1
+        found[into] = j
 
 
 @compiled

@@ -1,6 +1,6 @@
 """One step of the decentralised filter for all robots of all runs, compiled, robot by robot.
 
-The neighbour search on a grid of cells, and the step itself. :mod:`robots.safety.barrier` derives the rows,
+Whom a robot may sense, :mod:`robots.safety.crowd` finds. :mod:`robots.safety.barrier` derives the rows,
 :mod:`robots.safety.solver` solves them; :mod:`robots.safety.step` is the same step with runs side by side, and a test
 holds the two together.
 """
@@ -11,14 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.compiled import compiled
+from robots.safety.crowd import around, fill_grid
 from robots.safety.protocol import BLOCKERS, WALLS
-from robots.safety.rows import MOST as _MOST
-from robots.safety.rows import Constants as Constants
-from robots.safety.solver import RELAXED as _RELAXED
-from robots.safety.solver import WHEEL_ROWS as WHEEL_ROWS
-from robots.safety.solver import project as project
-from robots.safety.solver import wheel_rows as wheel_rows
-from robots.safety.things import nearest_on_obstacle as nearest_on_obstacle
+from robots.safety.rows import MOST, Constants
+from robots.safety.solver import RELAXED, WHEEL_ROWS, project, wheel_rows, within_wheels
+from robots.safety.things import nearest_on_obstacle
 
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -30,61 +27,12 @@ def _finite(x: float, y: float) -> bool:
 
 
 @compiled
-def _bucket(cx: int, cy: int, size: int) -> int:
-    return ((cx * 73856093) ^ (cy * 19349663)) & (size - 1)
-
-
-@compiled
-def _cell(coordinate: float, side: float) -> int:
-    return int(np.floor(min(max(coordinate / side, -1e9), 1e9)))
-
-
-@compiled
-def _fill_grid(points: Real, side: float, cells: Index, first: Index, order: Index) -> None:
-    """Sort robots into cells of a side, metres, hashed into buckets: ``order[first[b]:first[b + 1]]`` is bucket b.
-
-    Hashing keeps the grid as small as the crowd, however far a robot strays. A robot without a finite position is in
-    no bucket: nobody can sense it.
-    """
-    size = len(first) - 1
-    first[:] = 0
-    for i in range(len(points)):
-        cells[i, 2] = -1
-        if _finite(points[i, 0], points[i, 1]):
-            for axis in range(2):
-                cells[i, axis] = _cell(points[i, axis], side)
-            cells[i, 2] = _bucket(cells[i, 0], cells[i, 1], size)
-            first[cells[i, 2]] += 1
-    for b in range(size):
-        first[b + 1] += first[b]
-    for i in range(len(points) - 1, -1, -1):
-        b = cells[i, 2]
-        if b >= 0:
-            first[b] -= 1  # from the end of the bucket down to its start
-            order[first[b]] = i
-
-
-@compiled
-def _within_wheels(vx: float, vy: float, gx: float, gy: float, speed: float, weight: float) -> float:
-    """The largest s <= 1 with v + s g in the wheels' diamond; 0 if v itself is not and g does not lead back."""
-    s = 1.0
-    for side in range(WHEEL_ROWS):
-        sign_x = 1.0 if side % 2 else -1.0
-        sign_y = weight if side // 2 else -weight
-        room = speed - sign_x * vx - sign_y * vy
-        slope = sign_x * gx + sign_y * gy
-        if slope > room:
-            s = min(s, room / slope) if room > 0.0 else 0.0
-    return s
-
-
-@compiled
 def _bounded(x: float, y: float) -> tuple[float, float]:
-    """(x, y), m/s, shortened to :data:`_MOST` in its larger part."""
+    """(x, y), m/s, shortened to :data:`MOST` in its larger part."""
     largest = max(abs(x), abs(y))
-    if largest <= _MOST:
+    if largest <= MOST:
         return x, y
-    return x / largest * _MOST, y / largest * _MOST
+    return x / largest * MOST, y / largest * MOST
 
 
 @compiled
@@ -136,13 +84,13 @@ def step(
         size *= 2
     cells, order, first = np.empty((n, 3), np.int64), np.empty(n, np.int64), np.empty(size + 1, np.int64)
     rows = np.empty((WHEEL_ROWS + n + len(walls) + obstacles, 3))
-    work, source = np.empty_like(rows), np.empty(len(rows), np.int64)
+    work, source, found = np.empty_like(rows), np.empty(len(rows), np.int64), np.empty(n, np.int64)
     reach, safe, gain = constants.sensing_range, constants.safe_distance, constants.gain
     window = reach - safe
     noisy = turns.shape[2] > 0
     for run in range(batch):
         p, q = points[run], seen[run]
-        _fill_grid(q, reach, cells, first, order)
+        fill_grid(q[:, 0], q[:, 1], reach, cells, first, order)
         for i in range(n):
             x, y = p[i, 0], p[i, 1]
             hx, hy = headings[run, i, 0], headings[run, i, 1]
@@ -161,30 +109,24 @@ def step(
             count = np.int64(WHEEL_ROWS)  # a literal would be a type of its own, and compile all of it twice
             law = np.hypot(gx, gy)
             crowding = 0.0
-            column, line = _cell(x, reach), _cell(y, reach)
-            for cell in range(9):
-                cx, cy = column + cell % 3 - 1, line + cell // 3 - 1
-                b = _bucket(cx, cy, size)
-                for place in range(first[b], first[b + 1]):
-                    j = order[place]
-                    if j == i or cells[j, 0] != cx or cells[j, 1] != cy:
-                        continue
-                    dx, dy = x - q[j, 0], y - q[j, 1]
-                    if dx * dx + dy * dy >= reach * reach:
-                        continue
-                    ex, ey = hx * dx + hy * dy, hx * dy - hy * dx
-                    if noisy:
-                        ex, ey = _measured(ex, ey, turns[run, i, j], offsets[run, i, j])
-                    distance = np.hypot(ex, ey)
-                    if distance == 0.0:  # no direction leads away
-                        continue
-                    nx, ny = ex / distance, ey / distance
-                    rows[count, 0], rows[count, 1] = nx, ny
-                    barrier = gain * (distance * distance - safe * safe) / (4.0 * distance)
-                    rows[count, 2] = nx * vx + ny * vy - max(barrier, -_MOST)
-                    source[count] = j
-                    count += 1
-                    crowding = max(crowding, _crowding((distance - safe) / window, nx, ny, gx, gy, law))
+            for place in range(around(x, y, reach, i, cells, first, order, found)):
+                j = found[place]
+                dx, dy = x - q[j, 0], y - q[j, 1]
+                if dx * dx + dy * dy >= reach * reach:
+                    continue
+                ex, ey = hx * dx + hy * dy, hx * dy - hy * dx
+                if noisy:
+                    ex, ey = _measured(ex, ey, turns[run, i, j], offsets[run, i, j])
+                distance = np.hypot(ex, ey)
+                if distance == 0.0:  # no direction leads away
+                    continue
+                nx, ny = ex / distance, ey / distance
+                rows[count, 0], rows[count, 1] = nx, ny
+                barrier = gain * (distance * distance - safe * safe) / (4.0 * distance)
+                rows[count, 2] = nx * vx + ny * vy - max(barrier, -MOST)
+                source[count] = j
+                count += 1
+                crowding = max(crowding, _crowding((distance - safe) / window, nx, ny, gx, gy, law))
             for k in range(len(walls) + obstacles):
                 if k < len(walls):
                     ox, oy = walls[k, 0], walls[k, 1]
@@ -207,7 +149,7 @@ def step(
                 else:
                     nx, ny = ex / distance, ey / distance
                 rows[count, 0], rows[count, 1] = nx, ny
-                rows[count, 2] = -max(gain * (distance - constants.clearance), -_MOST)
+                rows[count, 2] = -max(gain * (distance - constants.clearance), -MOST)
                 source[count] = code
                 count += 1
                 crowding = max(crowding, _crowding((distance - constants.clearance) / window, nx, ny, gx, gy, law))
@@ -215,19 +157,19 @@ def step(
             phi = constants.turn * crowding + min(constants.stuck_turn_limit, constants.stuck_turn_rate * wait)
             c, s = np.cos(phi), side[run, i] * np.sin(phi)
             tx, ty = c * gx - s * gy, s * gx + c * gy
-            s = _within_wheels(vx, vy, tx, ty, speed, weight)
+            s = within_wheels(vx, vy, tx, ty, speed, weight)
             tx, ty = s * tx, s * ty
             ux, uy, delta = project(rows, count, work, speed, weight, vx + tx, vy + ty)
             u[run, i, 0], u[run, i, 1] = ux, uy
             relaxation[run, i] = delta
             if delta > 0.0:
                 # The thresholds are lowered by now: the rows that decided are those without slack.
-                found = 0
+                blocking = 0
                 for r in range(WHEEL_ROWS, count):
-                    if found < BLOCKERS and rows[r, 0] * ux + rows[r, 1] * uy <= rows[r, 2] + _RELAXED:
-                        blockers[run, i, found] = source[r]
-                        found += 1
-            s = _within_wheels(vx, vy, gx, gy, speed, weight)
+                    if blocking < BLOCKERS and rows[r, 0] * ux + rows[r, 1] * uy <= rows[r, 2] + RELAXED:
+                        blockers[run, i, blocking] = source[r]
+                        blocking += 1
+            s = within_wheels(vx, vy, gx, gy, speed, weight)
             intervention[run, i] = np.hypot(ux - vx - s * gx, uy - vy - s * gy)
             wish, progress = np.hypot(tx, ty), np.hypot(ux - vx, uy - vy)
             if progress < constants.stuck_progress * wish and wish > constants.stuck_wish:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.compiled import compiled
+from robots.compiled import compiled, inlined
 
 Real = NDArray[np.float64]
 Count = int | np.int64
@@ -133,6 +133,20 @@ def wheel_rows(rows: Real, speed: float, weight: float) -> None:
         rows[side, 0] = (1.0 if side % 2 else -1.0) / norm
         rows[side, 1] = (weight if side // 2 else -weight) / norm
         rows[side, 2] = -speed / norm
+
+
+@inlined
+def within_wheels(vx: float, vy: float, gx: float, gy: float, speed: float, weight: float) -> float:
+    """The largest s <= 1 with v + s g in the wheels' diamond; 0 if v itself is not and g does not lead back."""
+    s = 1.0
+    for side in range(WHEEL_ROWS):
+        sign_x = 1.0 if side % 2 else -1.0
+        sign_y = weight if side // 2 else -weight
+        room = speed - sign_x * vx - sign_y * vy
+        slope = sign_x * gx + sign_y * gy
+        share = room / slope if room > 0.0 else 0.0
+        s = min(s, share) if slope > room else s
+    return s
 
 
 @compiled

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.compiled import compiled, inlined
-from robots.safety.crowd import LARGE, fill_grid, near, others
+from robots.safety.crowd import LARGE, around, fill_grid, in_rows, others
 from robots.safety.protocol import BLOCKERS
 from robots.safety.rows import CLOSE, LEVEL, MOST, NORMAL_X, NORMAL_Y, ROW, Constants, Noise, Things, rows_of
-from robots.safety.solver import RELAXED, TIGHT, WHEEL_ROWS, project, wheel_rows
+from robots.safety.solver import RELAXED, TIGHT, WHEEL_ROWS, project, wheel_rows, within_wheels
 from robots.worlds.lanes import (
     GX,
     GY,
@@ -57,7 +57,8 @@ def filter_step(
         size *= 2
     cells, order, first = np.empty((n, 3), np.int64), np.empty(n, np.int64), np.empty(size + 1, np.int64)
     if large:
-        fill_grid(state, senses, constants.sensing_range, cells, first, order)
+        there_x, there_y = state[senses.others, :, 0], state[senses.others + 1, :, 0]
+        fill_grid(there_x, there_y, constants.sensing_range, cells, first, order)
     most = n + len(things.walls) + len(things.radii)
     lanes, problem = np.empty((most, ROW, runs)), np.empty((WHEEL_ROWS + most, 3))
     work, source, found = np.empty_like(problem), np.empty(most, np.int64), np.empty(n, np.int64)
@@ -66,11 +67,12 @@ def filter_step(
         speed, weight = constants.speed_limits[i], constants.turn_weights[i]
         _bound(state[GX, i], state[GY, i])
         _bound(state[VX, i], state[VY, i])
-        count = (
-            near(state, senses, constants.sensing_range, i, cells, first, order, found)
-            if large
-            else others(i, n, found)
-        )
+        if large:
+            x, y = state[senses.own, i, 0], state[senses.own + 1, i, 0]
+            count = around(x, y, constants.sensing_range, i, cells, first, order, found)
+            in_rows(found, count)
+        else:
+            count = others(i, n, found)
         used = rows_of(state, i, found, count, senses, constants, things, noise, lanes, source)
         _crowding(lanes, used, state[GX, i], state[GY, i], broken)
         _wish(state, i, broken, constants, wish_x, wish_y)
@@ -125,20 +127,6 @@ def _wish(state: Real, i: int, crowding: Real, constants: Constants, wish_x: Rea
         gx, gy = cosine * gx - sine * gy, sine * gx + cosine * gy
         share = within_wheels(vx, vy, gx, gy, speed, weight)
         wish_x[m], wish_y[m] = vx + share * gx, vy + share * gy
-
-
-@inlined
-def within_wheels(vx: float, vy: float, gx: float, gy: float, speed: float, weight: float) -> float:
-    """The largest s <= 1 with v + s g in the wheels' diamond; 0 if v itself is not and g does not lead back."""
-    s = 1.0
-    for side in range(WHEEL_ROWS):
-        sign_x = 1.0 if side % 2 else -1.0
-        sign_y = weight if side // 2 else -weight
-        room = speed - sign_x * vx - sign_y * vy
-        slope = sign_x * gx + sign_y * gy
-        share = room / slope if room > 0.0 else 0.0
-        s = min(s, share) if slope > room else s
-    return s
 
 
 @compiled

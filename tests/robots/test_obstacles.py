@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from robots import GTERNAL, Arena, NearIdentityDiffeomorphism, judge, make_world
 from robots.obstacles import Obstacle, disc
-from robots.safety import kernel
+from robots.safety import things
 from robots.testbed import collision_centres
 from robots.worlds.contact import Contact
 
@@ -32,7 +32,7 @@ shapes = pytest.mark.parametrize("name", SHAPES)
 def test_the_compiled_distance_is_the_public_one(name: str, point: tuple[float, float]) -> None:
     obstacle = SHAPES[name]
     distance, away = obstacle.nearest(point)
-    core, x, y = kernel.nearest_on_obstacle(obstacle.vertices, *point)
+    core, x, y = things.nearest_on_obstacle(obstacle.vertices, *point)
     assert core - obstacle.radius == pytest.approx(float(distance), abs=1e-12)
     assume(abs(core) > 1e-6)
     # On the medial axis inside a polygon two sides are equally near: either direction is right.

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from robots import GTERNAL, Arena, NearIdentityDiffeomorphism
 from robots.obstacles import Obstacle, disc
-from robots.safety import FilterSettings, Noise, kernel, make_filter
+from robots.safety import FilterSettings, Noise, kernel, make_filter, solver
 
 NID = NearIdentityDiffeomorphism(0.025)
 PERIOD = 0.033
@@ -74,9 +74,9 @@ def test_with_a_common_velocity_beyond_the_wheels_the_law_is_left_out(
     limit, weight = 0.2, 2.2
     edge = limit / (abs(np.cos(direction)) + weight * abs(np.sin(direction)))
     vx, vy = size * edge * np.cos(direction), size * edge * np.sin(direction)
-    assert kernel._within_wheels(vx, vy, 0.0, 0.0, limit, weight) == 0.0
-    assert kernel._within_wheels(vx, vy, vx, vy, limit, weight) == 0.0
-    back = kernel._within_wheels(vx, vy, -vx, -vy, limit, weight)
+    assert solver.within_wheels(vx, vy, 0.0, 0.0, limit, weight) == 0.0
+    assert solver.within_wheels(vx, vy, vx, vy, limit, weight) == 0.0
+    back = solver.within_wheels(vx, vy, -vx, -vy, limit, weight)
     assert back == 1.0  # v + g is at rest
 
 
@@ -87,7 +87,7 @@ def test_the_law_is_scaled_onto_the_diamond_and_no_further_than_it_must(
     limit, weight = 0.2, 2.2
     y = share * (limit - abs(x)) / weight * 0.99
     gx, gy = kernel._bounded(gx, gy)
-    s = kernel._within_wheels(x, y, gx, gy, limit, weight)
+    s = solver.within_wheels(x, y, gx, gy, limit, weight)
     assert 0.0 <= s <= 1.0
     reached = abs(x + s * gx) + weight * abs(y + s * gy)
     assert reached <= limit + 1e-9

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robots.safety import kernel
+from robots.safety import solver
 
 SPEED, WEIGHT = 0.2, 2.2
 PROBLEMS = 2500
@@ -24,16 +24,16 @@ def problem(kind: str, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray
         angle = angle[:1] + np.pi * rng.integers(0, 2, m)
     elif kind == "on a grid of directions":
         angle = np.round(angle / (np.pi / 4)) * (np.pi / 4)
-    rows = np.empty((kernel.WHEEL_ROWS + m, 3))
-    kernel.wheel_rows(rows, SPEED, WEIGHT)
-    rows[kernel.WHEEL_ROWS :] = np.stack([np.cos(angle), np.sin(angle), lower], axis=1)
+    rows = np.empty((solver.WHEEL_ROWS + m, 3))
+    solver.wheel_rows(rows, SPEED, WEIGHT)
+    rows[solver.WHEEL_ROWS :] = np.stack([np.cos(angle), np.sin(angle), lower], axis=1)
     if kind == "through one point":
-        rows[kernel.WHEEL_ROWS :, 2] = rows[kernel.WHEEL_ROWS :, :2] @ rng.uniform(-0.05, 0.05, 2)
+        rows[solver.WHEEL_ROWS :, 2] = rows[solver.WHEEL_ROWS :, :2] @ rng.uniform(-0.05, 0.05, 2)
     return rows, rng.normal(0.0, 0.2, 2)
 
 
 def solved(rows: np.ndarray, wish: np.ndarray) -> tuple[np.ndarray, float]:
-    x, y, relaxation = kernel.project(rows.copy(), len(rows), np.empty_like(rows), SPEED, WEIGHT, *wish)
+    x, y, relaxation = solver.project(rows.copy(), len(rows), np.empty_like(rows), SPEED, WEIGHT, *wish)
     return np.array([x, y]), relaxation
 
 
@@ -48,7 +48,7 @@ def general(rows: np.ndarray, wish: np.ndarray) -> tuple[np.ndarray, bool]:
 
 def lowered(rows: np.ndarray, by: float) -> np.ndarray:
     relaxed = rows.copy()
-    relaxed[kernel.WHEEL_ROWS :, 2] -= by
+    relaxed[solver.WHEEL_ROWS :, 2] -= by
     return relaxed
 
 
@@ -79,7 +79,7 @@ def test_the_order_of_the_rows_does_not_matter(seed: int, kind: str) -> None:
     rng = np.random.default_rng(seed)
     rows, wish = problem(kind, rng)
     u, relaxation = solved(rows, wish)
-    shuffled = np.concatenate([rows[: kernel.WHEEL_ROWS], rng.permutation(rows[kernel.WHEEL_ROWS :])])
+    shuffled = np.concatenate([rows[: solver.WHEEL_ROWS], rng.permutation(rows[solver.WHEEL_ROWS :])])
     again, relaxed_again = solved(shuffled, wish)
     np.testing.assert_allclose(relaxed_again, relaxation, rtol=0.0, atol=1e-9)
     np.testing.assert_allclose(again, u, rtol=0.0, atol=1e-6 if relaxation else 1e-9)
@@ -93,8 +93,8 @@ def test_the_wheels_are_never_relaxed(seed: int, kind: str) -> None:
 
 
 def test_without_rows_a_feasible_wish_is_returned_unchanged() -> None:
-    rows = np.empty((kernel.WHEEL_ROWS, 3))
-    kernel.wheel_rows(rows, SPEED, WEIGHT)
+    rows = np.empty((solver.WHEEL_ROWS, 3))
+    solver.wheel_rows(rows, SPEED, WEIGHT)
     u, relaxation = solved(rows, np.array([0.1, -0.02]))
     assert u.tolist() == [0.1, -0.02]
     assert relaxation == 0.0

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from robots import GTERNAL, Arena, NearIdentityDiffeomorphism
 from robots.obstacles import disc
-from robots.safety import FilterSettings, kernel, make_filter
+from robots.safety import FilterSettings, make_filter, solver
 from robots.safety.barrier import STUCK_RECOVERY
 
 NID = NearIdentityDiffeomorphism(0.025)
@@ -52,9 +52,9 @@ def test_the_stuck_time_grows_by_the_period_and_shrinks_at_its_own_rate(period: 
 
 @pytest.mark.parametrize(("lack", "told"), [(2e-10, 0.0), (2e-7, 1e-7)])
 def test_a_relaxation_by_rounding_is_no_relaxation(lack: float, told: float) -> None:
-    rows = np.empty((kernel.WHEEL_ROWS + 2, 3))
-    kernel.wheel_rows(rows, 0.2, 2.2)
+    rows = np.empty((solver.WHEEL_ROWS + 2, 3))
+    solver.wheel_rows(rows, 0.2, 2.2)
     rows[-2:] = [[1.0, 0.0, 0.05], [-1.0, 0.0, lack - 0.05]]
-    x, y, relaxation = kernel.project(rows, len(rows), np.empty_like(rows), 0.2, 2.2, 0.0, 0.0)
+    x, y, relaxation = solver.project(rows, len(rows), np.empty_like(rows), 0.2, 2.2, 0.0, 0.0)
     assert relaxation == pytest.approx(told, rel=1e-3, abs=1e-15)
     np.testing.assert_allclose([x, y], [0.05 - lack / 2.0, 0.0], atol=1e-9)
