@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ from numpy.typing import NDArray
 from formation import FormationLaw, Framework, needs
 from formation.laws.protocol import LEADER_FIRST_FOLLOWER
 from formation.measurements import ANGLE, KINDS, RATIO, perfect
-from scenarios.definition.files.law_file import LawFile
+from scenarios.definition.files.law_file import LawFile, defined
 from scenarios.errors import InputError, did_you_mean
 
 Real = NDArray[np.float64]
@@ -153,7 +152,7 @@ class OwnFactory:
         module = file.execute()
         make = getattr(module, name, None)
         if not callable(make):
-            names = _factories(module)
+            names = defined(module)
             known = did_you_mean(name, names) if names else "it has none at all"
             raise InputError(f"{scenario}: law.factory: {file.path} has no function or class {name!r}, {known}")
         check_parameters(scenario, name, make, parameters)
@@ -180,15 +179,6 @@ class OwnFactory:
             arguments = ", ".join(["target", *(f"{name}={value:g}" for name, value in self._parameters.items())])
             raise self._file.failure(f"{self._name}({arguments})", error) from error
         return OwnLaw(self._file, raw, target, None if delta is None else np.array(delta))
-
-
-def _factories(module: ModuleType) -> list[str]:
-    """Names of the functions and classes that the file itself defines for others."""
-    return [
-        name
-        for name, value in vars(module).items()
-        if callable(value) and getattr(value, "__module__", None) == module.__name__ and not name.startswith("_")
-    ]
 
 
 def check_parameters(scenario: str, factory: str, make: Callable[..., Any], given: Mapping[str, float]) -> None:

@@ -103,6 +103,15 @@ def read(scenario: str, folder: Path, name: str, key: str = "law.file") -> LawFi
         raise InputError(f"{scenario}: {key}: {path} cannot be read: {reason}") from None
 
 
+def defined(module: ModuleType) -> list[str]:
+    """Names of the functions and classes that a file itself defines for others."""
+    return [
+        name
+        for name, value in vars(module).items()
+        if callable(value) and getattr(value, "__module__", None) == module.__name__ and not name.startswith("_")
+    ]
+
+
 def _assigned(body: list[ast.stmt], name: str) -> str | None:
     """The literal text that the last assignment to ``name`` among statements gives it."""
     found = None

@@ -36,10 +36,9 @@ def read_points(path: Path, name: str | None, seconds: float, scenario: str) -> 
     module = file.execute()
     way = getattr(module, name, None)
     if not callable(way):
-        names = [known for known, value in vars(module).items() if callable(value) and not known.startswith("_")]
-        raise InputError(
-            f"{scenario}: reference.function: {path} has no function {name!r}, {did_you_mean(name, names)}"
-        )
+        names = law_file.defined(module)
+        known = did_you_mean(name, names) if names else "it has none at all"
+        raise InputError(f"{scenario}: reference.function: {path} has no function {name!r}, {known}")
     count = max(2, math.ceil(seconds / INTERVAL) + 1)
     times = [seconds * k / (count - 1) for k in range(count)]
     return [_point(t, _asked(file, name, way, t), f"{path}: {name}({t:g})") for t in times]
