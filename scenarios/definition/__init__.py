@@ -14,6 +14,7 @@ __all__ = [
     "keys",
     "load",
     "own_law",
+    "parts",
     "references",
     "schema",
     "starts",

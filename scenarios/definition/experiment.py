@@ -1,7 +1,5 @@
 """From a validated scenario to the objects of the theory and of the machines."""
 
-# Longer than 300 lines: every part of an experiment is made here, from one scenario, in one order.
-
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
@@ -13,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from formation import (
     LAWS,
-    AngleLaw,
     AngleSet,
     FormationLaw,
     Framework,
@@ -21,19 +18,12 @@ from formation import (
     Phase,
     TargetFormation,
     VelocityEstimator,
-    agents,
-    decay_rates,
-    needs,
 )
-from formation.laws.another_pair import AnotherPairLaw
 from formation.laws.base import ORIENTATION, SCALE
-from formation.laws.protocol import LEADER_FIRST_FOLLOWER
-from formation.measurements import ANGLE, RATIO
-from robots import GTERNAL, Arena, Fleet, Imperfections, Instruments, NearIdentityDiffeomorphism, RobotModel
+from robots import Arena, Fleet, Instruments, NearIdentityDiffeomorphism, RobotModel
 from robots.measured import MeasuredModel
-from robots.obstacles import Obstacle
 from robots.safety import FilterSettings
-from scenarios.definition.bounds import LONGEST_RUN, check_size
+from scenarios.definition.bounds import check_size
 from scenarios.definition.choice import chosen
 from scenarios.definition.events.build import build_events, check_front
 from scenarios.definition.events.event import RESHAPE, Event
@@ -41,11 +31,10 @@ from scenarios.definition.events.reshape import cut, reshaped
 from scenarios.definition.files import robot_file
 from scenarios.definition.formations import Aim, build_aim
 from scenarios.definition.load import ScenarioFile, load
-from scenarios.definition.own_law import NotLoaded, OwnFactory, check_parameters, condition
-from scenarios.definition.references import build_reference
-from scenarios.definition.schema import LawTable, Scenario, SensorTable
+from scenarios.definition.parts import course, machines
+from scenarios.definition.parts import law as laws
+from scenarios.definition.schema import Scenario
 from scenarios.definition.starts import Starts, build_starts
-from scenarios.definition.targets import in_order
 from scenarios.errors import InputError, located
 
 Real = NDArray[np.float64]
@@ -240,29 +229,29 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
         InputError: anything in the scenario that cannot be used, with file and field.
     """
     path = file.path
-    needed = _needed(file)
+    needed = laws.needed_graph(file)
     scenario, numbers = chosen(path, file.scenario, needed)
     if duration is not None and not (np.isfinite(duration) and duration > 0.0):
         raise InputError(f"--duration: expected a positive number of seconds, got {duration:g}")
     check_size(path, scenario, duration)
     aim = build_aim(path, scenario, needed)
     with located(path, "robot"):
-        robot = _robot(scenario)
+        robot = machines.robot_model(scenario)
         nid = NearIdentityDiffeomorphism(scenario.robot.projection_distance_m)
     if scenario.sensor.delay_periods and scenario.plant.name == "single_integrator":
         raise InputError(f"{path}: sensor.delay_periods: the plant single_integrator is continuous, expected 0")
     if scenario.law.name == "angle" and aim.target is not None:
-        _check_rates(path, aim.target, scenario.plant.control_period_s)
+        laws.check_rates(path, aim.target, scenario.plant.control_period_s)
     if scenario.law.feedforward:
-        _check_feedforward(path, scenario, aim)
+        laws.check_feedforward(path, scenario, aim)
     if scenario.sensor.field_of_view_deg is not None:
         check_front(f"{path}: sensor.field_of_view_deg", scenario)
-    arena = _arena(path, scenario)
+    arena = machines.arena(path, scenario)
     whom = numbers or tuple(range(1, aim.formation.graph.n + 1))
     events = build_events(path, scenario, whom, aim.formation.graph)
-    phases, shapes = cut(_phases(path, scenario, aim.formation, duration), events)
-    own_gains = _own_gains(path, scenario, aim)
-    law = _law(file, aim, phases, to_run, own_gains)
+    phases, shapes = cut(course.phases(path, scenario, aim.formation, duration), events)
+    own_gains = laws.own_gains(path, scenario, aim)
+    law = laws.make_law(file, aim, phases, to_run, own_gains)
     if scenario.law.activation == "sequential" and aim.formation is not aim.target:
         raise InputError(f"{path}: law.activation: 'sequential' needs a leader-first-follower graph")
     experiment = Experiment(
@@ -273,14 +262,14 @@ def build(file: ScenarioFile, duration: float | None = None, to_run: bool = True
         phases=phases,
         law=law,
         own_gains=own_gains,
-        estimator=_estimator(path, scenario, aim.formation.graph),
-        instruments=_instruments(path, scenario, law, aim.formation.graph),
+        estimator=machines.estimator(path, scenario, aim.formation.graph),
+        instruments=machines.instruments(path, scenario, law, aim.formation.graph),
         nid=nid,
         robot=robot,
         arena=replace(arena, obstacles=(*arena.obstacles, *(each.obstacle for each in events if each.obstacle))),
-        filter_settings=_filter_settings(path, scenario),
+        filter_settings=machines.filter_settings(path, scenario),
         measured=robot_file.measured(scenario, path),
-        fleet=_fleet(path, scenario, nid, robot, aim.formation.graph.n),
+        fleet=machines.fleet(path, scenario, nid, robot, aim.formation.graph.n),
         asked_duration=duration,
         events=events,
     )
@@ -301,227 +290,3 @@ def _shapes(first: Experiment, shapes: tuple[int, ...], to_run: bool) -> tuple[E
         aim = replace(new.aim, angles=first.angles, target_angles=first.angles.measure(new.formation.positions))
         made.append(replace(first, aim=aim, law=new.law, own_gains=new.own_gains, instruments=new.instruments))
     return tuple(made[count] for count in shapes)
-
-
-def _check_rates(path: str, target: TargetFormation, control_period: float) -> None:
-    """Refuse a follower so slow (rate sin^2 of its angle, Theorem 1) that the longest run there can be is too short."""
-    rates, longest = decay_rates(target), LONGEST_RUN * control_period
-    slowest = int(rates.argmin())
-    if rates[slowest] * longest < 1.0:
-        i, j, k = agents.numbers(target.graph.triangles[slowest])
-        raise InputError(
-            f"{path}: agents: Assumption 2: agent {k} is all but collinear with its neighbours {i} and {j}, |sin| = "
-            f"{abs(np.sin(target.follower_angles[slowest])):.2g}: at {rates[slowest]:.2g} 1/s it cannot settle within "
-            f"the longest run, {longest:g} s"
-        )
-
-
-def _check_feedforward(path: str, scenario: Scenario, aim: Aim) -> None:
-    """The feed-forward belongs to the angle law on its leader-first-follower graph, all followers active."""
-    if scenario.law.name != "angle" or aim.formation is not aim.target:
-        raise InputError(f'{path}: law.feedforward: only for law.name = "angle", got "{scenario.law.name}"')
-    if scenario.law.without_neighbour == "another-pair":
-        raise InputError(f'{path}: law.feedforward: it is of one pair of neighbours, expected none with "another-pair"')
-    if scenario.law.activation == "sequential":
-        raise InputError(f"{path}: law.feedforward: followers that wait cannot follow, expected all to be active")
-
-
-def _arena(path: str, scenario: Scenario) -> Arena:
-    obstacles = []
-    for number, table in enumerate(scenario.obstacles, start=1):
-        with located(path, f"obstacles[{number}]"):
-            obstacles.append(Obstacle(np.array(table.vertices_m), table.radius_m))
-    with located(path, "arena"):
-        return Arena(scenario.arena.x_m, scenario.arena.y_m, scenario.arena.walls, tuple(obstacles))
-
-
-def _filter_settings(path: str, scenario: Scenario) -> FilterSettings:
-    table = scenario.safety
-    with located(path, "safety"):
-        return FilterSettings(
-            safe_distance=table.safe_distance_m,
-            sensing_range=table.sensing_range_m,
-            clearance=table.clearance_m,
-            gain=table.gain_per_s,
-            turn=table.turn_rad,
-            stuck_time=table.stuck_time_s,
-        )
-
-
-def _needed(file: ScenarioFile) -> str:
-    """The condition on the sensing graph that the law declares, a key of ``formation.graph.conditions.CONDITIONS``."""
-    table = file.scenario.law
-    if table.name == "own" and table.without_neighbour == "another-pair":
-        raise InputError(f'{file.path}: law.without_neighbour: "another-pair" is for law.name = "angle", got "own"')
-    if table.name != "own":
-        return LAWS[table.name].graph if table.name in LAWS else LEADER_FIRST_FOLLOWER
-    return LEADER_FIRST_FOLLOWER if file.law is None or table.factory is None else condition(file.law, table.factory)
-
-
-def _law(file: ScenarioFile, aim: Aim, phases: tuple[Phase, ...], to_run: bool, own_gains: Real | None) -> FormationLaw:
-    table = file.scenario.law
-    if table.name != "own":
-        return _built_in(file.path, table, aim, own_gains)
-    if not to_run or file.law is None or table.factory is None:
-        return NotLoaded()
-    factory = OwnFactory(file.path, file.law, table.factory, table.parameters)
-    return factory.make(aim.formation, phases[0].delta)
-
-
-def _built_in(path: str, table: LawTable, aim: Aim, own_gains: Real | None) -> FormationLaw:
-    if isinstance(aim.formation, TargetFormation) and table.name == "angle":
-        check_parameters(path, "the angle law", lambda target: None, table.parameters)
-        kind = AnotherPairLaw if table.without_neighbour == "another-pair" else AngleLaw
-        return kind(aim.formation, table.first_follower, own_gains)
-    if table.without_neighbour == "another-pair":
-        raise InputError(f'{path}: law.without_neighbour: "another-pair" is for law.name = "angle", got "{table.name}"')
-    make = LAWS[table.name]
-    check_parameters(path, f"the {table.name} law", make, table.parameters)
-    with located(path, "law"):
-        return make(aim.formation, **table.parameters)
-
-
-def _own_gains(path: str, scenario: Scenario, aim: Aim) -> Real | None:
-    """(n - 2,) the gain of each follower on top of eq. (u); None where all are 1, and for other laws.
-
-    Raises:
-        InputError: a gain for an agent that has none, or for a law that has none.
-    """
-    given = [agent for agent in in_order(scenario.agents) if agent.gain is not None]
-    if scenario.law.name != "angle" or not isinstance(aim.formation, TargetFormation):
-        if given or scenario.law.gain != "paper":
-            field = "law.gain" if not given else f"agents[id {given[0].id}].gain"
-            raise InputError(f"{path}: {field}: only for the angle law")
-        return None
-    for agent in given:
-        if agents.rows(agent.id) < agents.FIRST_ORDINARY:
-            raise InputError(f"{path}: agents[id {agent.id}].gain: leader and first follower have none")
-    if not given and scenario.law.gain == "paper":
-        return None
-    rates = decay_rates(aim.formation)
-    gains = np.ones(len(rates)) if scenario.law.gain == "paper" else 1.0 / rates
-    for agent in given:
-        gains[agents.rows(agent.id) - agents.FIRST_ORDINARY] = agent.gain
-    return gains
-
-
-def _estimator(path: str, scenario: Scenario, graph: Graph) -> VelocityEstimator | None:
-    if scenario.velocity_known_by == "all":
-        return None
-    table = scenario.communication
-    edges = graph.edges if table.edges is None else agents.rows(table.edges)
-    with located(path, "communication.edges"):
-        return VelocityEstimator(graph.n, edges, table.gain_per_s)
-
-
-def _instruments(path: str, scenario: Scenario, law: FormationLaw, graph: Graph) -> Instruments:
-    kinds = needs(law).measures
-    edges = law.edges if isinstance(law, AnotherPairLaw) else graph.edges
-    corners = graph.corners if {ANGLE, RATIO} & set(kinds) else ()
-    with located(path, "law.measures"):
-        return Instruments(edges, corners, kinds, imperfections(scenario.sensor))
-
-
-def imperfections(table: SensorTable) -> Imperfections:
-    """How bad the sensors are."""
-    return Imperfections(
-        position=table.position_noise_m,
-        bearing=np.radians(table.bearing_noise_deg),
-        distance=table.distance_noise_m,
-        angle=np.radians(table.angle_noise_deg),
-        ratio=table.ratio_noise,
-        edge_loss=table.edge_loss,
-        dropout=table.dropout,
-    )
-
-
-def _robot(scenario: Scenario) -> RobotModel:
-    table = scenario.robot
-    return RobotModel(
-        drive=replace(GTERNAL.drive, wheel_speed_limit=table.wheel_speed_limit_rad_s),
-        chassis=replace(GTERNAL.chassis, tyre_friction=table.tyre_friction, body_friction=table.body_friction),
-    )
-
-
-def _fleet(path: str, scenario: Scenario, nid: NearIdentityDiffeomorphism, robot: RobotModel, n: int) -> Fleet:
-    """Every robot as its agent's table has it.
-
-    Raises:
-        InputError: robots of their own where all are measured, or share one filter.
-    """
-    own = {int(agents.rows(agent.id)): agent.robot for agent in scenario.agents if agent.robot is not None}
-    if not own:
-        return Fleet(robot.drive, nid, (robot.chassis,) * n)
-    field = f"{path}: agents[id {agents.number(min(own))}].robot"
-    if scenario.robot.model == "measured":
-        raise InputError(f'{field}: measured robots have numbers of their own, expected robot.model = "nominal"')
-    if scenario.safety.filter == "centralised":
-        raise InputError(f"{field}: the centralised filter takes all robots for equal, expected another safety.filter")
-    ahead, limits = np.full(n, nid.projection_distance), np.full(n, robot.drive.wheel_speed_limit)
-    bodies = [robot.chassis] * n
-    for row, table in own.items():
-        ahead[row] = table.projection_distance_m or ahead[row]
-        limits[row] = table.wheel_speed_limit_rad_s or limits[row]
-        length, width = table.length_m or robot.chassis.length, table.width_m or robot.chassis.width
-        bodies[row] = replace(robot.chassis, length=length, width=width)
-    drive = replace(robot.drive, wheel_speed_limit=limits)
-    return Fleet(drive, NearIdentityDiffeomorphism(ahead), tuple(bodies))
-
-
-def _phases(path: str, scenario: Scenario, formation: Framework, duration: float | None) -> tuple[Phase, ...]:
-    """The maneuver, cut or extended to ``duration``; one phase named after the law's aim where no phases are given."""
-    deltas = _displacements(path, scenario, formation)
-    if scenario.reference is not None:
-        reference = build_reference(path, scenario.reference)
-        velocity = complex(reference.velocity(0.0))
-        length = duration or scenario.duration_s or 0.0
-        return (Phase(scenario.reference.kind, length, (velocity.real, velocity.imag), deltas[0], reference),)
-    if not scenario.phases:
-        return (Phase("shape", duration or scenario.duration_s or 0.0, delta=deltas[0]),)
-    phases, elapsed = [], 0.0
-    for table, delta in zip(scenario.phases, deltas, strict=True):
-        length = table.duration_s
-        if duration is not None:
-            last = table is scenario.phases[-1]
-            length = duration - elapsed if last else min(length, duration - elapsed)
-        if length > 0.0:
-            phases.append(Phase(table.name, length, table.velocity_m_s, delta))
-        elapsed += length
-    return tuple(phases)
-
-
-def _displacements(path: str, scenario: Scenario, formation: Framework) -> list[tuple[float, float] | None]:
-    """delta_12 of each phase: the scenario's, or that of p* for a law that takes its own from the target."""
-    if scenario.reference is not None:
-        given = [scenario.reference.displacement_m]
-    else:
-        given = [phase.displacement_m for phase in scenario.phases] or [None]
-    for number, delta in enumerate(given, start=1):
-        if delta is not None and not any(delta):
-            field = "reference" if scenario.reference is not None else f"phases[{number}]"
-            raise InputError(f"{path}: {field}.displacement_m: agents 1 and 2 must not be sent to one place")
-    if scenario.law.name == "own":
-        return given
-    if scenario.law.name != "angle":
-        if not LAWS[scenario.law.name].steers:
-            if any(delta is not None for delta in given):
-                field = "phases" if scenario.reference is None else "reference"
-                raise InputError(f"{path}: {field}.displacement_m: the {scenario.law.name} law follows none")
-            return given
-        return [_of_target(formation) if delta is None else delta for delta in given]
-    if scenario.law.first_follower == "stationary":
-        return given
-    if scenario.reference is not None:
-        return [given[0] or _of_target(formation)]
-    if not scenario.phases:
-        raise InputError(f"{path}: law.first_follower: {scenario.law.first_follower!r} needs phases to follow")
-    for number, delta in enumerate(given, start=1):
-        if delta is None:
-            raise InputError(f"{path}: phases[{number}].displacement_m: missing")
-    return given
-
-
-def _of_target(formation: Framework) -> tuple[float, float]:
-    """p*_2 - p*_1, metres."""
-    x, y = formation.positions[agents.FIRST_FOLLOWER] - formation.positions[agents.LEADER]
-    return float(x), float(y)

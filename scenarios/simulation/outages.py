@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from robots.instruments import Disturbance, Instruments
 from robots.own_motion import Sensed
 from scenarios.definition.events.event import DROPOUT, EDGE_LOSS, MESSAGE_LOSS, OBSTACLE, PUSH, SENSOR, STOP, Event
-from scenarios.definition.experiment import Experiment, imperfections
+from scenarios.definition.experiment import Experiment
+from scenarios.definition.parts.machines import imperfections
 from scenarios.definition.schema import SensorTable
 from scenarios.simulation.trajectory import Trajectory
 
