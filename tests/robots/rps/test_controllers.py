@@ -67,10 +67,15 @@ def test_pose_controllers_bring_robots_to_their_poses() -> None:
         first.create_clf_unicycle_pose_controller,
         first.create_hybrid_unicycle_pose_controller,
     ):
-        off = drive(make(), x, goals, 1500) - goals
-        near = np.hypot(off[:, 0], off[:, 1]) < 0.05
-        straight = np.abs(np.angle(np.exp(1j * off[:, 2]))) < 0.2
-        assert (near & straight).any(axis=0).all(), make.__name__
+        controller, poses, arrived = make(), x, np.zeros(8, dtype=bool)
+        for _ in range(10):
+            poses = (seen := drive(controller, poses, goals, 150))[-1]
+            near = np.hypot(*(seen - goals)[:, :2].transpose(1, 0, 2)) < 0.05
+            straight = np.abs(np.angle(np.exp(1j * (seen - goals)[:, 2]))) < 0.2
+            arrived |= (near & straight).any(axis=0)
+            if arrived.all():
+                break
+        assert arrived.all(), make.__name__
 
 
 def test_parked_robots_stand() -> None:
