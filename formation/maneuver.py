@@ -40,6 +40,11 @@ class Phase:
         """Whether the leader ever moves."""
         return any(self.velocity) or self.reference is not None
 
+    @property
+    def bends(self) -> list[float]:
+        """Seconds into the phase at which its reference, if it has one, is not smooth."""
+        return [] if self.reference is None else self.reference.bends.tolist()
+
 
 def pair_ends(start: Real, phases: Sequence[Phase], first_follower: str, feedforward: bool = False) -> Real:
     """(P, 2, 2) where Theorem 2 puts agents 1 and 2 at the end of each phase, metres, once agent 2 has settled.

@@ -5,15 +5,16 @@ moves it:
 
     dq_F/dt = M_F q_F + b e(t),     q_F(t + h) = e^{M_F h} q_F(t) + int_0^h e^{M_F (h - s)} b e(t + s) ds.
 
-With e known in closed form the integral is a Gauss-Legendre sum, exact to rounding.
+With e known in closed form the integral is a Gauss-Legendre sum, exact to rounding. On a reference a first follower by
+displacement is one more agent of the cascade, de/dt = delta(t) - e, that delta(t) drives in the same way.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import count, islice
+from itertools import count, islice, pairwise
 
 import numpy as np
 
@@ -32,6 +33,9 @@ KEPT = 64
 """Stretches that are kept for the next phase of the same loop: many short phases have few lengths."""
 
 ROW = agents.FIRST_ORDINARY
+
+NEGLIGIBLE = 1e-9
+"""Share of a step within which of its ends a bend counts as there."""
 
 
 def follow(cascade: Cascade, start: Complex, first: Motion, step: float) -> Iterator[Complex]:
@@ -53,15 +57,43 @@ def follow(cascade: Cascade, start: Complex, first: Motion, step: float) -> Iter
             halvings = max(0, int(np.ceil(np.log2(step / longest))))
             while done + 0.5**halvings > 1.0:
                 halvings += 1
-            state = _Stretch.over(cascade, step * 0.5**halvings).advance(state, first, begin + done * step)
+            state = _Stretch.over(cascade, step * 0.5**halvings, ROW).advance(state, first.at, begin + done * step)
             done += 0.5**halvings
         q = np.empty_like(q)
         q[agents.LEADER], q[agents.FIRST_FOLLOWER], q[ROW:] = 0.0, first.at(np.asarray(step * index)), state
 
 
+def steer(
+    cascade: Cascade, start: Complex, delta: Callable[[Real], Complex], bends: Real, step: float, begin: float
+) -> Iterator[Complex]:
+    """Likewise behind a first follower by displacement, while the displacement that it is told changes.
+
+    Args:
+        cascade: its first follower's rate is 1.
+        start: (n,) or (n, k) positions at ``begin``, complex metres.
+        delta: maps times (...), seconds, to displacements (...), complex metres.
+        bends: times at which delta is not smooth, increasing.
+        step: seconds.
+        begin: seconds.
+    """
+    q, steered = start - start[agents.LEADER], agents.FIRST_FOLLOWER
+    for index in count(1):
+        yield q
+        low, high = begin + step * (index - 1), begin + step * index
+        inside = bends[(bends > low + NEGLIGIBLE * step) & (bends < high - NEGLIGIBLE * step)].tolist()
+        state = q[steered:]
+        for edge, following in pairwise([low, *inside, high]):
+            length = following - edge if inside else step
+            parts = max(1, int(np.ceil(length / LONGEST_STEP)))
+            for part in range(parts):
+                stretch = _Stretch.over(cascade, length / parts, steered)
+                state = stretch.advance(state, delta, edge + part * length / parts)
+        q = np.concatenate([np.zeros_like(q[:steered]), state])
+
+
 @dataclass(frozen=True, eq=False)
 class _Stretch:
-    """One exact step of the followers: e^{M h}, and what each node of the quadrature adds."""
+    """One exact step of the agents that something drives: e^{M h}, and what each node of the quadrature adds."""
 
     forward: Complex
     nodes: Real
@@ -69,41 +101,65 @@ class _Stretch:
 
     @classmethod
     @lru_cache(maxsize=KEPT)
-    def over(cls, cascade: Cascade, h: float) -> _Stretch:
+    def over(cls, cascade: Cascade, h: float, row: int) -> _Stretch:
+        """Of the agents from ``row`` on: those behind the first follower, or with it, at its rate."""
         roots, weights = np.polynomial.legendre.leggauss(NODES)
         nodes = (roots + 1.0) * (h / 2.0)
-        driven = cascade.whole[ROW:, agents.FIRST_FOLLOWER]
-        kernels = np.stack([cascade.exponential(h - node)[ROW:, ROW:] @ driven for node in nodes], axis=1)
-        return cls(cascade.exponential(h)[ROW:, ROW:], nodes, kernels * (weights * (h / 2.0)))
+        told = np.eye(1, cascade.n - 1, dtype=np.complex128)[0] * cascade.rates[0]
+        driven = cascade.whole[row:, row - 1] if row == ROW else told
+        kernels: Complex = np.stack([cascade.exponential(h - node)[row:, row:] @ driven for node in nodes], axis=1)
+        return cls(cascade.exponential(h)[row:, row:], nodes, kernels * (weights * (h / 2.0)))
 
-    def advance(self, state: Complex, first: Motion, begin: float) -> Complex:
-        """The followers (n - 2, ...) after the stretch that begins at ``begin`` seconds."""
+    def advance(self, state: Complex, drive: Callable[[Real], Complex], begin: float) -> Complex:
+        """The driven agents' ``state`` after the stretch that begins at ``begin`` seconds."""
         times = begin + self.nodes.reshape(-1, *(1,) * (state.ndim - 1))
-        return self.forward @ state + self.kernels @ first.at(times)
+        return self.forward @ state + self.kernels @ drive(times)
 
 
-def ideal(cascade: Cascade, start: Complex, phase: Phase, first_follower: str, step: float) -> Iterator[Complex]:
-    """Where a phase takes ideal agents from ``start`` (n, ...), complex metres, at its start and every ``step`` s."""
-    leader = start[agents.LEADER]
-    first = motion(first_follower, start[agents.FIRST_FOLLOWER] - leader, phase.displacement)
-    for index, q in enumerate(follow(cascade, start, first, step)):
-        yield q + (leader + complex(*phase.velocity) * (step * index))
+def ideal(
+    cascade: Cascade, start: Complex, phase: Phase, first_follower: str, step: float, begin: float = 0.0
+) -> Iterator[Complex]:
+    """Where a phase takes ideal agents from ``start`` (n, ...), complex metres, at its start and every ``step`` s.
+
+    On a reference, which begins so many seconds into it, the first follower stands still or is steered by displacement.
+    """
+    leader, reference, delta = start[agents.LEADER], phase.reference, phase.displacement
+    if reference is None or delta is None or first_follower == "stationary":
+        first = motion(first_follower, start[agents.FIRST_FOLLOWER] - leader, delta)
+        moved = follow(cascade, start, first, step)
+    else:
+        steered = Cascade(cascade.graph, cascade.weights, np.concatenate([[1.0], cascade.rates[1:]]))
+        moved = steer(steered, start, lambda t: delta * reference.factor(t), reference.bends, step, begin)
+    for index, q in enumerate(moved):
+        yield q + (leader + _way(phase, begin, step * index))
 
 
-def held(cascade: Cascade, start: Complex, phase: Phase, first_follower: str, period: float) -> Iterator[Complex]:
+def _way(phase: Phase, begin: float, elapsed: float) -> complex:
+    """How far the leader comes in so many seconds after ``begin``, complex metres."""
+    if phase.reference is None:
+        return complex(*phase.velocity) * elapsed
+    return complex(phase.reference.path(begin + elapsed) - phase.reference.path(begin))
+
+
+def held(
+    cascade: Cascade, start: Complex, phase: Phase, first_follower: str, period: float, begin: float = 0.0
+) -> Iterator[Complex]:
     """The same where each command is held over a control period, seconds, as a digital controller does.
 
     The points go straight while a command is held: those of wheeled robots do so once they are slow.
     """
-    delta = phase.displacement
+    delta, velocity, reference = phase.displacement, complex(*phase.velocity), phase.reference
     law = EDGE_LAWS["stationary" if delta is None else first_follower]
     shape = Cascade(cascade.graph, cascade.weights, np.concatenate([[0.0], cascade.rates[1:]]))
-    p = start
-    while True:
+    p, told = start, delta or 0j
+    for index in count():
         yield p
+        if reference is not None:
+            velocity = complex(reference.velocity(begin + period * index))
+            told = (delta or 0j) * complex(reference.factor(begin + period * index))
         u = shape.apply(p)
-        u[agents.FIRST_FOLLOWER] = law(p[agents.FIRST_FOLLOWER] - p[agents.LEADER], np.asarray(delta or 0j))
-        p = p + period * (u + complex(*phase.velocity))
+        u[agents.FIRST_FOLLOWER] = law(p[agents.FIRST_FOLLOWER] - p[agents.LEADER], np.asarray(told))
+        p = p + period * (u + velocity)
 
 
 def points(states: Iterator[Complex], steps: int) -> Real:

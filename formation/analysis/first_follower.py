@@ -7,7 +7,7 @@ With e the displacement, e_0 its start and delta the one that is commanded,
     bearing        tan(phi(t) / 2) = tan(phi_0 / 2) e^{-t / |e_0|}, length kept, phi = angle from delta  rate 1 / |e_0|
 
 The last two are almost global: e_0 = 0, and the direction opposite to delta, are places of rest that no other start
-reaches. For the linear law delta may also change: see :func:`ramped` and :func:`turned`.
+reaches. Where delta changes, the linear law has its solution in :func:`formation.analysis.exact.steer`.
 """
 
 from __future__ import annotations
@@ -81,14 +81,3 @@ def rate(law: str, start: complex, delta: complex | None) -> float:
     if delta is None or law == "stationary":
         return 0.0
     return {"displacement": 1.0, "distance": 2.0 * abs(delta) ** 2, "bearing": 1.0 / abs(start)}[law]
-
-
-def ramped(start: complex, delta: complex, slope: complex) -> Motion:
-    """e_12(t) by displacement while delta(t) = ``delta`` + ``slope`` t: it lags by ``slope`` times one second."""
-    return Motion(lambda t: delta + slope * (t - 1.0) + (start - delta + slope) * np.exp(-t))
-
-
-def turned(start: complex, delta: complex, omega: float) -> Motion:
-    """e_12(t) by displacement while delta(t) = ``delta`` e^{i omega t}, omega in rad/s."""
-    late = delta / (1.0 + 1j * omega)
-    return Motion(lambda t: late * np.exp(1j * omega * np.asarray(t)) + (start - late) * np.exp(-t))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from formation.plane import Complex, Real
+from formation.references.protocol import NO_BENDS
 
 SAMPLES = 4096
 """Points at which the length of a closed path is summed: exact to rounding, as the path is smooth and periodic."""
@@ -65,6 +66,10 @@ class ClosedCurve:
     def cycle(self) -> float | None:
         """One round: the turn of the tangent is a multiple of a full turn."""
         return self.period
+
+    @property
+    def bends(self) -> Real:
+        return NO_BENDS
 
     @property
     def angular_rate(self) -> float:

@@ -23,10 +23,15 @@ class Reference(Protocol):
 
     Attributes:
         cycle: seconds after which v_r, D and mu repeat; None where they never do.
+        bends: (B,) times, seconds, increasing, at which v_r or D has a bend, so that mu may jump; none where all is
+            smooth.
     """
 
     @property
     def cycle(self) -> float | None: ...
+
+    @property
+    def bends(self) -> Real: ...
 
     def path(self, t: Real | float) -> Complex:
         """P(t) - P(0), metres, how far the leader is from where it began."""
@@ -43,6 +48,10 @@ class Reference(Protocol):
     def rate(self, t: Real | float) -> Complex:
         """mu(t) = sigma + i omega, 1/s."""
         ...
+
+
+NO_BENDS: Real = np.empty(0)
+"""Of a reference that is smooth."""
 
 
 def pair_displacement(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from formation.plane import Complex, Real
+from formation.references.protocol import NO_BENDS
 
 
 class WayPoints:
@@ -33,6 +34,7 @@ class WayPoints:
             raise ValueError("scales must be positive")
         log_factor = np.log(scales / scales[0]) + 1j * (turns - turns[0])
         self._end = float(times[-1])
+        self._bends = times[-1:] if moving else NO_BENDS
         ends = "not-a-knot" if moving else "clamped"
         self._path = CubicSpline(times, places - places[0], bc_type=ends)
         self._log_factor = CubicSpline(times, log_factor, bc_type=ends)
@@ -40,6 +42,10 @@ class WayPoints:
     @property
     def cycle(self) -> float | None:
         return None
+
+    @property
+    def bends(self) -> Real:
+        return self._bends
 
     def path(self, t: Real | float) -> Complex:
         return np.asarray(self._path(np.minimum(t, self._end)), dtype=np.complex128)

@@ -50,9 +50,13 @@ def build_reference(path: str, table: ReferenceTable) -> Reference:
 
 def _ramps(path: str, table: ReferenceTable) -> Reference:
     _check_open(path, table, "ramps have times and velocities")
-    times = np.array([each.t_s for each in table.velocities])
     with located(path, "reference.velocities"):
-        return Ramps(times, np.array([complex(*each.velocity_m_s) for each in table.velocities]))
+        return Ramps(
+            np.array([each.t_s for each in table.velocities]),
+            np.array([complex(*each.velocity_m_s) for each in table.velocities]),
+            np.array([each.scale for each in table.velocities]),
+            np.radians([each.turn_deg for each in table.velocities]),
+        )
 
 
 def _check_open(path: str, table: ReferenceTable, have: str) -> None:

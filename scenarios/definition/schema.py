@@ -111,20 +111,24 @@ class WayPointTable(Table):
 
 
 class RampTable(Table):
-    """A velocity that the leader has at a time."""
+    """What the leader and the formation are told at a time."""
 
     t_s: NotNegative
     """Seconds since the start; the first is 0, and they increase."""
-    velocity_m_s: Vector
+    velocity_m_s: Vector = (0.0, 0.0)
     """v_r then, in the common frame."""
+    scale: Positive = 1.0
+    """Of the formation, relative to the first."""
+    turn_deg: Number = 0.0
+    """Of the formation, counter-clockwise, not wrapped; differences from the first count."""
 
 
 class ReferenceTable(Table):
-    """A motion that changes all the time, in the place of phases: a closed curve, or way-points with times."""
+    """A motion that changes all the time, in the place of phases: a closed curve, way-points or ramps."""
 
     kind: Literal["circle", "ellipse", "figure-eight", "way-points", "ramps"]
     """The leader's path. Way-points are joined by cubic splines, twice continuously differentiable, at rest at both
-    ends. Ramps are velocities at times, joined by straight lines; the last one is kept."""
+    ends. Ramps are velocities, scales and turns at times, joined by straight lines; the last ones are kept."""
     width_m: Positive | None = None
     """Of a closed curve, along `direction_deg`; the diameter of a circle."""
     height_m: Positive | None = None

@@ -134,7 +134,8 @@ def _draw_phase(axes: Axes, experiment: Experiment, trajectory: Trajectory, inde
     exact = None
     if moves_exactly(experiment):
         ideal = motion(experiment, trajectory.points[rows[0]], index)[: len(rows)]
-        exact = np.linalg.norm(ideal - where, axis=-1)
+        there = where if experiment.phases[index].reference is None else placed(experiment, ideal)
+        exact = np.linalg.norm(ideal - there, axis=-1)
     for row in experiment.target.graph.followers.tolist():
         axes.semilogy(t, distances[:, row], color=agent_colour(row), linewidth=0.9, label=f"measured {row}")
         if exact is not None:

@@ -37,4 +37,6 @@ def _lag(experiment: Experiment, lag: tuple[float, float] | None) -> str:
         return f"shape {told}: no closed form covers this law, sensing or reference"
     if lag[0] < EXACT:
         return f"shape {told}: exact once settled"
-    return f"shape {told}, once settled: residual at most {100.0 * lag[0]:.3g} %, {100.0 * lag[1]:.3g} % rms"
+    repeats = experiment.phases[0].reference is not None and experiment.phases[0].reference.cycle is not None
+    when = "once settled" if repeats else "from its places on, by the law alone"
+    return f"shape {told}, {when}: residual at most {100.0 * lag[0]:.3g} %, {100.0 * lag[1]:.3g} % rms"

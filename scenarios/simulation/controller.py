@@ -20,6 +20,9 @@ from scenarios.simulation.outages import Outages
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
+INSIDE = 1e-9
+"""Share of a period by which its ends are inside of it: above the rounding of the time."""
+
 
 class Controller:
     """The formation law as the robots run it: body-frame velocities of the projected points from what they sense.
@@ -154,6 +157,9 @@ class Controller:
         if reference is None:
             return
         t = self._begin + elapsed
+        if reference.bends.size:  # where mu jumps, each period is told its own side
+            inside = INSIDE * (self._clock - self._begin)
+            t = min(max(t, self._begin + inside), self._clock - inside)
         self._commanded = as_vectors(reference.velocity(t))
         if self._phase.displacement is not None:
             self._delta = as_vectors(self._phase.displacement * reference.factor(t))

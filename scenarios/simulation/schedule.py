@@ -1,7 +1,8 @@
-"""When a run does what: its phases, cut where something happens, each part with a whole number of control periods."""
+"""When a run does what: its phases, cut where something happens or a reference bends, in whole control periods."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -15,7 +16,7 @@ from scenarios.definition.experiment import Experiment
 
 @dataclass(frozen=True)
 class Part:
-    """A stretch of a run in which nothing begins or ends but at its begin.
+    """A stretch of a run in which nothing begins, ends or bends but at its begin.
 
     Attributes:
         index: of its phase.
@@ -38,21 +39,26 @@ class Part:
 
 
 def schedule(experiment: Experiment) -> list[Part]:
-    """The parts of a run in their order; those of a run without events are its phases."""
+    """The parts of a run in their order; those of a run without events and bends are its phases."""
     length = experiment.scenario.plant.control_period_s
-    times = sorted({time for event in experiment.events for time in event.boundaries})
+    times = {time for event in experiment.events for time in event.boundaries}
     parts, start = [], 0.0
     for index, phase in enumerate(experiment.phases):
-        inside = [t - start for t in times if start + SAME_TIME < t < start + phase.duration - SAME_TIME]
-        edges = [0.0]
-        for edge in [*inside, phase.duration]:
-            if edge - edges[-1] > SAME_TIME or edge is phase.duration:
-                edges.append(edge)
-        for low, high in pairwise(edges):
+        for low, high in _cuts(phase, [t - start for t in sorted(times)]):
             count, _ = split(high - low, length)
             parts.append(Part(index, low == 0.0, start + low, high - low, count))
         start += phase.duration
     return parts
+
+
+def _cuts(phase: Phase, times: list[float]) -> Iterator[tuple[float, float]]:
+    """The stretches of a phase between its bends and these times, seconds since its begin."""
+    inside = [t for t in sorted([*times, *phase.bends]) if SAME_TIME < t < phase.duration - SAME_TIME]
+    edges = [0.0]
+    for edge in [*inside, phase.duration]:
+        if edge - edges[-1] > SAME_TIME or edge is phase.duration:
+            edges.append(edge)
+    return pairwise(edges)
 
 
 def split(duration: float, control_period: float) -> tuple[int, float]:
@@ -64,6 +70,11 @@ def split(duration: float, control_period: float) -> tuple[int, float]:
 def periods(phase: Phase, control_period: float) -> tuple[int, float]:
     """How many control periods fit a phase that nothing cuts, and their length, seconds."""
     return split(phase.duration, control_period)
+
+
+def pieces(phase: Phase, control_period: float) -> list[tuple[int, float]]:
+    """The same of each stretch between the bends of a phase that no event cuts."""
+    return [split(high - low, control_period) for low, high in _cuts(phase, [])]
 
 
 def count_periods(experiment: Experiment) -> int:

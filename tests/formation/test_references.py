@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from formation import AngleLaw, SensingGraph, TargetFormation
@@ -36,10 +36,17 @@ curves = st.builds(
     st.booleans(),
     st.booleans(),
 )
+RAMPS = Ramps(
+    np.array([0.0, 4.0, 11.0]),
+    np.array([0.0, 0.1 + 0.05j, -0.1j]),
+    np.array([2.0, 1.0, 3.0]),
+    np.array([0.5, 0.5, -1.0]),
+)
 
 
-@given(curves | st.just(WAY), st.floats(0.1, 19.9))
+@given(curves | st.just(WAY) | st.just(RAMPS), st.floats(0.1, 19.9))
 def test_velocity_and_rate_are_the_derivatives_of_path_and_factor(reference: Reference, t: float) -> None:
+    assume((np.abs(reference.bends - t) > STEP).all())
     ends = np.array([t - STEP, t + STEP])
     velocity = np.diff(reference.path(ends))[0] / (2.0 * STEP)
     rate = np.diff(np.log(reference.factor(ends) / reference.factor(t)))[0] / (2.0 * STEP)
@@ -151,6 +158,20 @@ def test_ramps_pass_the_velocities_they_are_told_on_straight_lines_and_keep_the_
     np.testing.assert_allclose(ramps.path(t), summed, atol=1e-12)
     assert (ramps.factor(t) == 1.0).all()
     assert (ramps.rate(t) == 0.0).all()
+
+
+def test_scale_and_turn_of_ramps_are_straight_lines_between_their_times_and_stay_after_the_last() -> None:
+    t = np.array([0.0, 2.0, 4.0, 7.5, 11.0, 20.0])
+    np.testing.assert_allclose(np.abs(RAMPS.factor(t)), [1.0, 0.75, 0.5, 1.0, 1.5, 1.5])
+    np.testing.assert_allclose(np.angle(RAMPS.factor(t)), [0.0, 0.0, 0.0, -0.75, -1.5, -1.5], atol=1e-15)
+    assert RAMPS.rate(11.0) == 0.0
+    assert RAMPS.rate(4.0) == pytest.approx(2.0 / 7.0 - 1.5j / 7.0)
+    assert RAMPS.bends.tolist() == [4.0, 11.0]
+
+
+def test_ramps_do_not_scale_through_nothing() -> None:
+    with pytest.raises(ValueError, match="scales must be positive"):
+        Ramps(np.array([0.0, 1.0]), np.zeros(2, dtype=complex), np.array([1.0, 0.0]))
 
 
 @pytest.mark.parametrize("times", [[0.0], [1.0, 2.0], [0.0, 2.0, 2.0]])

@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from formation import agents
+from formation.plane import as_complex
 from formation.references.lag import Settled, shape_residual
 from robots.nid import mapped
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.predictions import filtered
+from scenarios.measures.predictions.theory import motion, moves_exactly
 from scenarios.measures.tracking import following
 from scenarios.simulation.schedule import periods
 
@@ -47,7 +49,8 @@ class Course:
         turning: largest rate at which the formation turns, rad/s.
         scaling: largest rate at which it scales, 1/s.
         outrun: where it first asks too much of wheels; None where it never does, and for points, which have none.
-        lag: largest and root-mean-square shape residual over a cycle, once settled; None where nothing says it.
+        lag: largest and root-mean-square shape residual over a cycle, once settled, or, where nothing repeats, over the
+            run from the agents' places; None where nothing says it.
     """
 
     speed: Real
@@ -100,9 +103,10 @@ def _outrun(experiment: Experiment, velocity: NDArray[np.complex128], t: Real, s
 
 def _lag(experiment: Experiment, start: Real) -> tuple[float, float] | None:
     reference, scenario = experiment.phases[0].reference, experiment.scenario
+    if reference is not None and reference.cycle is None:
+        return _lag_from_places(experiment, start)
     if (
         reference is None
-        or reference.cycle is None
         or scenario.law.name != "angle"
         or experiment.first_follower != "displacement"
         or scenario.sensor.delay_periods
@@ -115,7 +119,18 @@ def _lag(experiment: Experiment, start: Real) -> tuple[float, float] | None:
     else:
         period = periods(experiment.phases[0], scenario.plant.control_period_s)[1]
         y = filtered.settled(experiment, start, reference, delta, period)
-    residual = shape_residual(experiment.target, y)
+    return _largest_and_rms(experiment, y)
+
+
+def _lag_from_places(experiment: Experiment, start: Real) -> tuple[float, float] | None:
+    """The same on a reference that never repeats: of the exact motion from the agents' places, over the whole run."""
+    if not moves_exactly(experiment):
+        return None
+    return _largest_and_rms(experiment, as_complex(motion(experiment, following(experiment, start, np.zeros(1))[0], 0)))
+
+
+def _largest_and_rms(experiment: Experiment, places: NDArray[np.complex128]) -> tuple[float, float]:
+    residual = shape_residual(experiment.target, places)
     return float(residual.max()), float(np.sqrt((residual**2).mean()))
 
 

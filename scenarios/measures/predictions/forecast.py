@@ -61,8 +61,8 @@ def forecast(experiment: Experiment, start: Real, told: Collection[int] | None =
         before, shaped = shaped, experiment.of_phase(index)
         if loop is None or shaped is not before:
             loop = Cascade.of(shaped.target, gains=shaped.own_gains)
-        arrived = None
-        if told is None or index in told:
+        arrived = None  # nobody ever does behind a reference that changes
+        if phase.reference is None and (told is None or index in told):
             arrived = arrival(_errors(loop, as_complex(here), phase, first, as_complex(end)), loop.reach, NEAR, STEP)
         here = points(ideal(loop, as_complex(here), phase, first, phase.duration / steps), steps)[-1]
         error_sum = float(np.abs(experiment.angles.errors(here, shaped.target_angles)).sum())

@@ -14,7 +14,7 @@ from formation.analysis.exact import held, ideal, points
 from formation.plane import Complex, as_complex
 from scenarios.definition.events.event import RESHAPE
 from scenarios.definition.experiment import Experiment
-from scenarios.simulation.schedule import periods
+from scenarios.simulation.schedule import pieces
 
 Real = NDArray[np.float64]
 
@@ -25,13 +25,15 @@ def has_closed_loop(experiment: Experiment) -> bool:
 
 
 def moves_exactly(experiment: Experiment) -> bool:
-    """Whether ideal agents move as :func:`motion` says: constant phases, all active, v_r known to all, no delay."""
+    """Whether ideal agents move as :func:`motion` says: all active, v_r known to all, no delay; on a reference without
+    feed-forward, behind a first follower that stands still or is steered by displacement."""
     scenario = experiment.scenario
+    followed = experiment.first_follower in ("stationary", "displacement") and not scenario.law.feedforward
     return (
         has_closed_loop(experiment)
         and scenario.law.activation == "simultaneous"
         and experiment.estimator is None
-        and experiment.phases[0].reference is None
+        and (experiment.phases[0].reference is None or followed)
         and all(event.kind == RESHAPE for event in experiment.events)
         and not scenario.sensor.delay_periods
     )
@@ -51,16 +53,21 @@ def motion(experiment: Experiment, start: Real, index: int, horizon: float = np.
 
     Of the phase's first ``horizon`` seconds at most.
     """
-    count, period = periods(experiment.phases[index], experiment.scenario.plant.control_period_s)
-    return points(states(experiment, as_complex(start), index, period), int(min(count, horizon / period)))
+    phase, found, begin = experiment.phases[index], [start[None]], 0.0
+    for count, period in pieces(phase, experiment.scenario.plant.control_period_s):
+        moved = states(experiment, as_complex(found[-1][-1]), index, period, begin)
+        found.append(points(moved, int(min(count, max(0.0, horizon - begin) / period)))[1:])
+        begin += count * period
+    return np.concatenate(found)
 
 
-def states(experiment: Experiment, start: Complex, index: int, period: float) -> Iterator[Complex]:
+def states(experiment: Experiment, start: Complex, index: int, period: float, begin: float = 0.0) -> Iterator[Complex]:
     """The motion of a phase from ``start`` (n, ...), complex metres, state by state, every ``period`` seconds.
 
-    Commands are held over a period where the plant holds them; neither wheels nor a filter change them.
+    It begins so many seconds into the phase. Commands are held over a period where the plant holds them; neither wheels
+    nor a filter change them.
     """
     move = ideal if experiment.plant == "single_integrator" else held
     shaped = experiment.of_phase(index)
     loop = Cascade.of(shaped.target, gains=shaped.own_gains)
-    return move(loop, start, experiment.phases[index], experiment.first_follower, period)
+    return move(loop, start, experiment.phases[index], experiment.first_follower, period, begin)

@@ -1,7 +1,7 @@
 """The whole predicted way of a run against walls, obstacles and the floor's border, known before anything moves.
 
-On a reference it is the way of agents in their places that do not lag; in constant phases the exact motion of ideal
-agents from the start. Neither knows a filter: where the way leads into something, a filter has to lead around it or
+It is the exact motion of ideal agents from the start; on a reference with feed-forward, the way of agents in their
+places, which do not lag. Neither knows a filter: where the way leads into something, a filter has to lead around it or
 holds somebody up. Wheels that a reference outruns are the matter of :mod:`scenarios.measures.predictions.course`.
 """
 
@@ -42,11 +42,11 @@ def way(experiment: Experiment, start: Real) -> tuple[Real, Real] | None:
         return None
     seconds = sum(phase.duration for phase in experiment.phases)
     step = max(STEP, seconds / MOST_STEPS)
-    if experiment.phases[0].reference is not None:
+    if not moves_exactly(experiment):
+        if experiment.phases[0].reference is None:
+            return None
         t: Real = np.linspace(0.0, seconds, max(2, round(seconds / step) + 1))
         return t, following(experiment, start, t)
-    if not moves_exactly(experiment):
-        return None
     shaped, loop, first = experiment, None, experiment.first_follower
     times, places, here, begin = [np.zeros(1)], [start[None]], start, 0.0
     for index, phase in enumerate(experiment.phases):

@@ -10,8 +10,10 @@ from hypothesis import strategies as st
 from formation import EDGE_LAWS, AngleLaw, Phase, TargetFormation, VelocityEstimator, random_target
 from formation.analysis import first_follower, lags
 from formation.analysis.cascade import Cascade
-from formation.analysis.exact import follow, held, ideal, points
+from formation.analysis.exact import held, ideal, points, steer
 from formation.plane import as_complex, as_vectors
+from formation.references.protocol import NO_BENDS
+from formation.references.ramps import Ramps
 
 SEEDS = st.integers(0, 2**32 - 1)
 LAWS = ["stationary", "displacement", "distance", "bearing"]
@@ -137,13 +139,44 @@ def test_many_motions_at_once_are_the_single_ones() -> None:
             np.testing.assert_allclose(together, np.stack(alone, axis=1), atol=1e-12)
 
 
+@pytest.mark.parametrize("law", ["stationary", "displacement"])
+def test_on_ramps_the_exact_motion_is_where_fine_runge_kutta_steps_lead_through_every_bend(law: str) -> None:
+    """The bends at 0.37 and 1.5 s lie inside and at the end of a step."""
+    rng = np.random.default_rng(4)
+    target = random_target(6, rng)
+    ramps = Ramps(
+        np.array([0.0, 0.37, 1.5, 1.7]), np.array([0.0, 0.1, 0.1j, 0.0]), np.array([1.0, 0.8, 1.3, 1.3]),
+        np.array([0.0, 0.6, -0.4, 0.0]),
+    )  # fmt: skip
+    delta, phase = 0.3 + 0.4j, Phase("p", 2.0, delta=(0.3, 0.4), reference=ramps)
+    start, h = as_complex(rng.normal(size=(6, 2))), 0.005
+
+    def velocity(p: np.ndarray, t: float) -> np.ndarray:
+        u = Cascade.of(target).apply(p) + ramps.velocity(t)
+        if law == "displacement":
+            u[1] += delta * ramps.factor(t) - (p[1] - p[0])
+        return u
+
+    states = [start]
+    for step in range(400):
+        p, t = states[-1], step * h
+        k1 = velocity(p, t)
+        k2 = velocity(p + h / 2 * k1, t + h / 2)
+        k3 = velocity(p + h / 2 * k2, t + h / 2)
+        states.append(p + h / 6 * (k1 + 2 * (k2 + k3) + velocity(p + h * k3, t + h)))
+    exact = as_complex(points(ideal(Cascade.of(target), start, phase, law, 0.25), 8))
+    np.testing.assert_allclose(exact, np.array(states)[::50], atol=1e-8)
+    late = as_complex(points(ideal(Cascade.of(target), exact[3], phase, law, 0.25, 0.75), 5))
+    np.testing.assert_allclose(late, exact[3:], atol=1e-12)
+
+
 @settings(max_examples=8)
 @given(seed=SEEDS, slope=st.complex_numbers(min_magnitude=0.01, max_magnitude=0.2))
 def test_behind_a_ramped_displacement_the_followers_lag_as_predicted(seed: int, slope: complex) -> None:
     rng = np.random.default_rng(seed)
     target = random_target(6, rng, min_angle=np.radians(30.0))
-    first = first_follower.ramped(0.5 + 0.1j, 0.3 - 0.2j, slope)
-    *_, late = islice(follow(Cascade.of(target), as_complex(rng.normal(size=(6, 2))), first, 0.1), 1501)
+    start = as_complex(rng.normal(size=(6, 2)))
+    *_, late = islice(steer(Cascade.of(target, 1.0), start, lambda t: 0.3 - 0.2j + slope * t, NO_BENDS, 0.1, 0.0), 1501)
     lag = late - lags.shares(target) * (0.3 - 0.2j + slope * 150.0)
     np.testing.assert_allclose(lag, lags.ramp_lags(target, slope), atol=1e-9 * (1.0 + np.abs(lag).max()))
 
@@ -154,8 +187,9 @@ def test_a_turning_displacement_shrinks_and_twists_the_shape_as_predicted(seed: 
     rng = np.random.default_rng(seed)
     target = random_target(6, rng, min_angle=np.radians(30.0))
     delta = 0.4 + 0.3j
-    first = first_follower.turned(0.1 + 0.1j, delta, omega)
-    *_, late = islice(follow(Cascade.of(target), as_complex(rng.normal(size=(6, 2))), first, 0.1), 1501)
+    start = as_complex(rng.normal(size=(6, 2)))
+    turning = steer(Cascade.of(target, 1.0), start, lambda t: delta * np.exp(1j * omega * t), NO_BENDS, 0.1, 0.0)
+    *_, late = islice(turning, 1501)
     gains = lags.turning_gains(target, omega)
     np.testing.assert_allclose(late, gains * delta * np.exp(1j * omega * 150.0), atol=1e-9 * np.abs(gains).max())
     np.testing.assert_allclose(lags.turning_gains(target, 1e-9), lags.shares(target), atol=1e-6)

@@ -11,7 +11,9 @@ from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.definition.load import LIBRARY
 from scenarios.errors import InputError
 from scenarios.measures.predictions.course import course
-from scenarios.measures.tracking import reference
+from scenarios.measures.predictions.forecast import forecast
+from scenarios.measures.predictions.theory import motion
+from scenarios.measures.tracking import following, reference
 from scenarios.simulation.loop import simulate
 
 IDEAL = "plant.name=single_integrator"
@@ -156,6 +158,67 @@ def test_a_formation_on_ramps_follows_its_leader_exactly_where_v_r_is_known_to_a
     trajectory = simulate(experiment, 0)
     np.testing.assert_allclose(trajectory.points[-1], reference(experiment, trajectory)[-1], atol=1e-6)
     assert trajectory.points[-1, 0, 0] - trajectory.points[0, 0, 0] == pytest.approx(0.04 * 12.0 / 2.0, abs=1e-4)
+
+
+TOLD = """velocities = [
+    { t_s = 0.0, velocity_m_s = [0.02, -0.01] },
+    { t_s = 7.01, velocity_m_s = [0.0, 0.02], scale = 0.9, turn_deg = 40.0 },
+    { t_s = 20.0, scale = 1.1, turn_deg = 40.0 },
+    { t_s = 31.5, velocity_m_s = [0.01, 0.0], turn_deg = -60.0 },
+]"""
+
+
+def on_ramps(tmp_path: Path, first_follower: str, *changes: str) -> Experiment:
+    path = filed(tmp_path, f'kind = "ramps"\ndisplacement_m = [0.4, 0.1]\n{TOLD}')
+    return open_experiment(path, (IDEAL, f"law.first_follower={first_follower}", *changes), 40.0)
+
+
+def in_place(experiment: Experiment) -> list[str]:
+    """The changes that let everybody begin in its place."""
+    places = following(experiment, experiment.initial_points(0), np.zeros(1))[0]
+    return [f"agents.{k}.start={place}" for k, place in enumerate(places.tolist(), start=1)]
+
+
+@pytest.mark.parametrize("first_follower", ["stationary", "displacement"])
+def test_behind_ramps_agents_move_exactly_as_predicted(tmp_path: Path, first_follower: str) -> None:
+    experiment = on_ramps(tmp_path, first_follower, "law.feedforward=false")
+    trajectory = simulate(experiment, 0)
+    np.testing.assert_allclose(motion(experiment, trajectory.points[0], 0), trajectory.points, atol=1e-6)
+    ahead = forecast(experiment, trajectory.points[0])[0]
+    assert ahead.points is not None
+    assert ahead.arrival is None
+    np.testing.assert_allclose(ahead.points, trajectory.points[-1], atol=1e-6)
+
+
+@pytest.mark.parametrize("first_follower", ["stationary", "displacement"])
+def test_with_feed_forward_everybody_stays_in_place_through_every_bend_of_ramps(
+    tmp_path: Path, first_follower: str
+) -> None:
+    experiment = on_ramps(tmp_path, first_follower, *in_place(on_ramps(tmp_path, first_follower)))
+    trajectory = simulate(experiment, 0)
+    np.testing.assert_allclose(trajectory.points, reference(experiment, trajectory), atol=1e-8)
+
+
+def test_what_is_told_of_the_lag_behind_ramps_is_what_agents_do_that_begin_in_their_places(tmp_path: Path) -> None:
+    changes = ("displacement", "law.feedforward=false")
+    experiment = on_ramps(tmp_path, *changes)
+    told = course(experiment, experiment.initial_points(0))
+    assert told is not None
+    assert told.lag is not None
+    begun = on_ramps(tmp_path, *changes, *in_place(experiment))
+    assert residual(begun, 40.0) == pytest.approx(told.lag[0], abs=1e-7)
+    assert told.lag[0] > 0.05
+
+
+def test_commands_that_are_held_on_ramps_are_ramps_as_periods_shrink(tmp_path: Path) -> None:
+    errors = []
+    for period in (0.04, 0.02):
+        at = ("law.feedforward=false", f"plant.control_period_s={period}")
+        smooth = on_ramps(tmp_path, "displacement", *at)
+        held = on_ramps(tmp_path, "displacement", *at, "plant.name=unicycle", "safety.filter=none")
+        start = smooth.initial_points(0)
+        errors.append(np.abs(motion(held, start, 0) - motion(smooth, start, 0)).max())
+    assert errors[0] / errors[1] == pytest.approx(2.0, rel=0.05)
 
 
 @pytest.mark.parametrize(
