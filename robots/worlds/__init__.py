@@ -45,10 +45,12 @@ def make_world(
     measured: MeasuredModel | None = None,
     generators: Sequence[np.random.Generator] = (),
     bodies: Sequence[Chassis] | None = None,
+    steps: int = 1,
 ) -> World:
     """The world named ``plant`` with projected points (..., n, 2), metres, and headings theta (..., n), radians.
 
-    ``single_integrator`` has no bodies: its poses are the points themselves. With ``measured`` the robots of
+    ``single_integrator`` has no bodies: its poses are the points themselves, integrated in so many ``steps`` a control
+    period. With ``measured`` the robots of
     ``saturated`` and ``pymunk`` stand behind their firmware and under cameras, with random streams spawned from the
     runs' ``generators``. ``bodies`` are the n chassis where they are not all that of ``robot``.
 
@@ -58,7 +60,7 @@ def make_world(
     if measured is not None:
         return _measured(plant, nid.poses(points, theta), nid, robot, saturation, arena, measured, generators)
     if plant == "single_integrator":
-        return SingleIntegrator(points, theta)
+        return SingleIntegrator(points, theta, steps)
     poses = nid.poses(points, theta)
     if plant == "unicycle":
         return Unicycle(poses, nid, robot.drive)

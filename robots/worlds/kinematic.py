@@ -23,7 +23,9 @@ class SingleIntegrator:
     Each point keeps the frame it was given: its heading is that frame's x axis and never turns.
     """
 
-    def __init__(self, points: Real, theta: Real) -> None:
+    def __init__(self, points: Real, theta: Real, steps: int = 1) -> None:
+        """Take points (..., n, 2), metres, frames theta (..., n), radians, and so many steps in a control period."""
+        self._steps = steps
         self.points = np.array(points, dtype=np.float64)
         self.poses = np.concatenate([self.points, theta[..., None]], axis=-1)
         self.headings = _unit(theta)
@@ -35,16 +37,18 @@ class SingleIntegrator:
         return self.points, self.headings
 
     def step(self, controller: Controller, period: float) -> None:
-        h, p, frame = period, self.points, self.headings.view(np.complex128)
+        h, frame = period / self._steps, self.headings.view(np.complex128)
 
         def derivative(points: Real, elapsed: float) -> Real:
             return (controller(points, self.headings, elapsed).view(np.complex128) * frame).view(np.float64)
 
-        k1 = derivative(p, 0.0)
-        k2 = derivative(p + (h / 2.0) * k1, h / 2.0)
-        k3 = derivative(p + (h / 2.0) * k2, h / 2.0)
-        k4 = derivative(p + h * k3, h)
-        self.points = p + (h / 6.0) * (k1 + 2.0 * (k2 + k3) + k4)
+        for step in range(self._steps):
+            begin, p = step * h, self.points
+            k1 = derivative(p, begin)
+            k2 = derivative(p + (h / 2.0) * k1, begin + h / 2.0)
+            k3 = derivative(p + (h / 2.0) * k2, begin + h / 2.0)
+            k4 = derivative(p + h * k3, begin + h)
+            self.points = p + (h / 6.0) * (k1 + 2.0 * (k2 + k3) + k4)
         self.poses[..., :2] = self.points
 
     def push(self, displacement: Real) -> None:

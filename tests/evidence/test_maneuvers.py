@@ -83,5 +83,5 @@ def test_ideal_agents_follow_exactly_with_feed_forward_and_as_predicted_without(
         f"{np.log2(orders[1] / orders[0]):.2f}, without feed-forward {behind:.4f}, predicted {known.lag[0]:.4f}"
     )
     assert free < 1e-12
-    assert told < (1e-7 if (name, omega) == ("figure-eight", 0.5) else 1e-8)  # which turns faster than omega at times
+    assert told < 1e-8
     assert behind == pytest.approx(known.lag[0], rel=0.01)

@@ -42,6 +42,42 @@ def test_a_displacement_first_follower_is_exact_up_to_the_fourth_power_of_the_st
     assert 14.0 < coarse / fine < 18.0
 
 
+def in_place(experiment: Experiment) -> list[str]:
+    """The changes that let everybody begin in its place."""
+    places = following(experiment, experiment.initial_points(0), np.zeros(1))[0]
+    return [f"agents.{k}.start={place}" for k, place in enumerate(places.tolist(), start=1)]
+
+
+def begun_in_place(name: str, omega: float, period: float, *changes: str) -> Experiment:
+    """For one round."""
+    changed = (IDEAL, f"reference.period_s={2.0 * np.pi / omega}", f"plant.control_period_s={period}", *changes)
+    experiment = open_experiment(name, changed, 2.0 * np.pi / omega)
+    return open_experiment(name, (*changed, *in_place(experiment)), 2.0 * np.pi / omega)
+
+
+def test_where_a_figure_eight_turns_three_times_as_fast_as_on_average_steps_are_shorter() -> None:
+    """It turns at up to 1.6 rad/s, where one step in 33 ms leaves 4.4e-8."""
+    fine, coarse = (residual(begun_in_place("figure-eight", 0.5, h), 99.0) for h in (0.04, 0.08))
+    assert fine < 1e-8
+    assert 14.0 < coarse / fine < 18.0
+
+
+def test_one_step_a_period_leaves_the_first_follower_of_a_circle_off_by_the_error_constant_of_runge_kutta() -> None:
+    """The settled motion of e' = (mu - 1) e + delta D(t), D = e^{i w t}, mu = i w, under the classical method: with
+    k_1 .. k_4 of one step from e, e_next = e e^{i w h} has the solution e = delta (1 - c h^4 + ...) with the constant
+    c below. At w = 1.59, the sharpest turn of the figure eight at 0.5, c h^4 = 1.7e-7 for h = 33 ms: no single step of
+    the method can be exact to 1e-8 there.
+    """
+
+    def share(omega: float, h: float) -> complex:
+        return h**4 * omega**2 * (24j * omega**3 - 75.0 * omega**2 - 80j * omega + 30.0) / 2880.0
+
+    omega, h = 0.5, 0.02
+    run = as_complex(simulate(begun_in_place("circle", omega, h), 0).points)[-1]
+    assert (run[1] - run[0]) / 0.4 - 1.0 == pytest.approx(-share(omega, h), rel=0.03)
+    assert abs(share(1.59, 0.033)) > 1e-7
+
+
 @pytest.mark.parametrize(("name", "omega"), [("circle", 0.2), ("figure-eight", 0.2)])
 def test_without_feed_forward_the_lag_is_the_predicted_one(name: str, omega: float) -> None:
     experiment = opened(name, "law.feedforward=false", omega=omega)
@@ -171,12 +207,6 @@ TOLD = """velocities = [
 def on_ramps(tmp_path: Path, first_follower: str, *changes: str) -> Experiment:
     path = filed(tmp_path, f'kind = "ramps"\ndisplacement_m = [0.4, 0.1]\n{TOLD}')
     return open_experiment(path, (IDEAL, f"law.first_follower={first_follower}", *changes), 40.0)
-
-
-def in_place(experiment: Experiment) -> list[str]:
-    """The changes that let everybody begin in its place."""
-    places = following(experiment, experiment.initial_points(0), np.zeros(1))[0]
-    return [f"agents.{k}.start={place}" for k, place in enumerate(places.tolist(), start=1)]
 
 
 @pytest.mark.parametrize("first_follower", ["stationary", "displacement"])
