@@ -21,11 +21,18 @@ if TYPE_CHECKING:
     "--format", "formats", multiple=True, type=click.Choice(["png", "pdf", "svg"]), default=("png", "pdf"),
     show_default=True, help="May be given several times.",
 )  # fmt: skip
-def plot(run_folder: Path, out: Path | None, formats: tuple[str, ...]) -> None:
+@click.option(
+    "--at", "at", default="", metavar="T[,T...]", show_default=False,
+    help="Seconds at which the overview shows the robots.  [default: start, end, and of few phases each end]",
+)  # fmt: skip
+def plot(run_folder: Path, out: Path | None, formats: tuple[str, ...], at: str) -> None:
     """Draw the paper's figures of RUN, a finished run's folder; of a script's, its overview; of a sweep's, its runs."""
     from scenarios.storage import script_folder
     from scenarios.studies.sweep.sheet import is_sweep
 
+    times = _times(at)
+    if times and (is_sweep(run_folder) or script_folder.is_script(run_folder)):
+        raise InputError("--at: expected the folder of a scenario's run")
     if is_sweep(run_folder):
         _plot_sweep(run_folder, out or run_folder, formats)
         return
@@ -43,7 +50,7 @@ def plot(run_folder: Path, out: Path | None, formats: tuple[str, ...]) -> None:
     experiment, trajectory = finished.experiment, finished.trajectory
     metrics = measure(experiment, trajectory)
     console = new_console()
-    for path in draw(experiment, trajectory, metrics, out or run_folder, names_for(experiment), formats):
+    for path in draw(experiment, trajectory, metrics, out or run_folder, names_for(experiment), formats, times):
         console.print(plain(str(path)), markup=False)
 
 
@@ -141,6 +148,14 @@ def _sheet(folders: tuple[Path, ...], series: bool) -> Sheet:
     ]
     names = [folder.resolve().name for folder in folders]
     return side_by_side(names if len(set(names)) == len(names) else [str(folder) for folder in folders], results)
+
+
+def _times(text: str) -> list[float]:
+    """Comma-separated seconds."""
+    try:
+        return [float(part) for part in text.split(",")] if text else []
+    except ValueError:
+        raise InputError(f"--at: expected seconds, separated by commas, got {text[:40]!r}") from None
 
 
 def _plot_sweep(folder: Path, out: Path, formats: tuple[str, ...]) -> None:

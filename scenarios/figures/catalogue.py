@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
@@ -13,7 +13,7 @@ from scenarios.definition.experiment import Experiment
 from scenarios.errors import InputError, did_you_mean
 from scenarios.figures.decay import decay
 from scenarios.figures.graphs import graph
-from scenarios.figures.motion import motion
+from scenarios.figures.motion import motion, rows_at
 from scenarios.figures.separation import separation
 from scenarios.figures.style import print_style, render
 from scenarios.measures.metrics import Metrics
@@ -40,16 +40,20 @@ def names_for(experiment: Experiment) -> list[str]:
 
 
 @np.errstate(over="ignore", invalid="ignore")  # a diverged run has a figure too
-def draw(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, name: str) -> Figure:
-    """A figure by its name, in the style of print.
+def draw(
+    experiment: Experiment, trajectory: Trajectory, metrics: Metrics, name: str, at: Sequence[float] = ()
+) -> Figure:
+    """A figure by its name, in the style of print; the overview with the robots ``at`` times, seconds, if given.
 
     Raises:
-        InputError: there is none of that name.
+        InputError: there is none of that name, or a time is not one of the run.
     """
     if name not in FIGURES:
         raise InputError(f"figure {name[:40]!r}: {did_you_mean(name, FIGURES)}")
     make: Draw = FIGURES[name]
     with print_style():
+        if name == OVERVIEW:
+            return motion(experiment, trajectory, metrics, at)
         return make(experiment, trajectory, metrics)
 
 
@@ -61,19 +65,21 @@ def plot(
     folder: Path,
     names: Iterable[str],
     formats: Iterable[str],
+    at: Sequence[float] = (),
 ) -> list[Path]:
-    """Draw figures into ``folder`` as ``figure-NAME.FORMAT``, each file whole or not at all.
+    """Draw figures into ``folder`` as ``figure-NAME.FORMAT``, each file whole or not at all; see :func:`draw`.
 
     Returns:
         The files, in the order of ``names`` and ``formats``.
 
     Raises:
-        InputError: the folder cannot be written.
+        InputError: the folder cannot be written, or a time is not one of the run.
     """
+    rows_at(trajectory, at)  # before anything is drawn
     written = []
     with print_style(), np.errstate(over="ignore", invalid="ignore"):  # a diverged run is an outcome, not a warning
         for name in names:
-            figure = draw(experiment, trajectory, metrics, name)
+            figure = draw(experiment, trajectory, metrics, name, at)
             for form in formats:
                 path = folder / f"figure-{name}.{form}"
                 write_whole(path, render(figure, form))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -24,6 +26,9 @@ FRESH = 3.0
 
 SPAN = "#F3E3C3"
 """Colour of the time that an event lasts."""
+
+BADGE_BELOW, BADGE_RADIUS = 12.0, 4.5
+"""Points from the place of an event down to its number, and about how large that is."""
 
 BADGE = {"boxstyle": "circle,pad=0.18", "facecolor": "white", "linewidth": 0.6}
 
@@ -51,15 +56,20 @@ def mark_times(axes: Axes, experiment: Experiment, numbers: bool = False) -> Non
             )  # fmt: skip
 
 
+def places(experiment: Experiment, trajectory: Trajectory) -> Iterator[tuple[Event, tuple[float, float]]]:
+    """The events that happen somewhere, and where, metres."""
+    for event in shown(experiment):
+        if event.begin < trajectory.t[-1] and (place := whereabouts(event, trajectory)) is not None:
+            yield event, (float(place[0]), float(place[1]))
+
+
 def mark_places(axes: Axes, experiment: Experiment, trajectory: Trajectory) -> None:
     """The number of each event where it happens, if it happens somewhere."""
-    for event in shown(experiment):
-        if event.begin >= trajectory.t[-1] or (place := whereabouts(event, trajectory)) is None:
-            continue
+    for event, place in places(experiment, trajectory):
         axes.plot(*place, "x", color=_colour(event), markersize=4.0, markeredgewidth=1.0, zorder=6)
         axes.annotate(
-            str(event.number), place, (0.0, -12.0), textcoords="offset points", fontsize=SMALL - 1.0, ha="center",
-            va="center", bbox=BADGE | {"edgecolor": _colour(event)}, zorder=7,
+            str(event.number), place, (0.0, -BADGE_BELOW), textcoords="offset points", fontsize=SMALL - 1.0,
+            ha="center", va="center", bbox=BADGE | {"edgecolor": _colour(event)}, zorder=7,
             arrowprops={"arrowstyle": "-", "linewidth": 0.5, "color": INK, "shrinkA": 0.0, "shrinkB": 1.0},
         )  # fmt: skip
 

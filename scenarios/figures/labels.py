@@ -13,17 +13,30 @@ Real = NDArray[np.float64]
 
 POINTS_PER_INCH = 72.0
 _DIRECTIONS = 16
-_RINGS = (1.0, 1.5, 2.2)
+_FROM_ABOVE = np.array(sorted(range(1 - _DIRECTIONS // 2, _DIRECTIONS // 2 + 1), key=abs))
+"""Directions in the order in which they are tried: straight above first, straight below last."""
+
+_RINGS = (1.0, 1.5, 2.2, 3.2, 4.5)
 """Distances from the anchor that are tried, in multiples of the nearest."""
 
-_ENOUGH, _STEP_BACK = 0.85, 0.25
-"""Clearance that counts as enough, and what going one ring out must gain, in heights of the type."""
+_FAR = 2
+"""Rings before those from which a line leads back."""
+
+_ENOUGH, _STEP_BACK, _TURN_AWAY = 0.85, 0.25, 0.01
+"""Clearance that counts as enough, and what one ring out, or one direction farther from above, must gain, in heights of
+the type."""
 
 _DENSE, _RASTER = 100_000, 0.5
 """Occupied points from which on they are merged where they are nearer than this, points of type."""
 
-_LEGIBLE = 0.35
-"""Clearance, in heights of the type, below which a label on crowded axes is left out."""
+_COVERING, _LEGIBLE = 0.5, 0.35
+"""Clearance, in heights of the type, below which a label hides what is near, and is left out on crowded axes."""
+
+_FREE = 2.0
+"""Points of type between a line and what it must not cross."""
+
+_HALF_HEIGHT = 0.33
+"""Of a figure, in heights of the type."""
 
 
 def points_per_metre(axes: Axes) -> float:
@@ -40,12 +53,14 @@ class Labels:
     Args:
         axes: with their final limits.
         occupied: (q, 2) points, metres, that no label should cover.
+        solid: (s, 2) points, metres, that neither labels nor the lines that lead back to them should.
     """
 
-    def __init__(self, axes: Axes, occupied: Real) -> None:
+    def __init__(self, axes: Axes, occupied: Real, solid: Real | None = None) -> None:
         self._axes = axes
         self._scale = points_per_metre(axes)
-        finite = occupied.reshape(-1, 2)
+        self._solid = np.empty((0, 2)) if solid is None else solid[np.isfinite(solid).all(axis=1)] * self._scale
+        finite = np.concatenate([occupied.reshape(-1, 2), self._solid / self._scale])
         points = finite[np.isfinite(finite).all(axis=1)] * self._scale
         if len(points) > _DENSE:
             points = np.unique(np.round(points / _RASTER).astype(np.int32).view(np.int64)).view(np.int32)
@@ -61,21 +76,25 @@ class Labels:
         """
         centre = anchor * self._scale
         half_width = 0.25 * size * len(text)
-        turn = np.exp(2j * np.pi * (0.25 + np.arange(_DIRECTIONS) / _DIRECTIONS))  # straight above is tried first
+        turn = 1j * np.exp(2j * np.pi * _FROM_ABOVE / _DIRECTIONS)
         direction = np.stack([turn.real, turn.imag], axis=1)
-        rings = [direction * (ring * distance + half_width * np.abs(direction[:, :1])) for ring in _RINGS]
+        reach = _RINGS[: _FAR + 1] if crowded else _RINGS
+        rings = [direction * (ring * distance + half_width * np.abs(direction[:, :1])) for ring in reach]
         candidates = centre + np.concatenate(rings)
-        loss = _STEP_BACK * size * np.repeat(np.arange(len(_RINGS)), _DIRECTIONS)
-        score = self._clearance(candidates, half_width, size) - loss
-        if crowded and score.max() < _LEGIBLE * size:
+        loss = size * (_STEP_BACK * np.arange(len(reach))[:, None] + _TURN_AWAY * np.abs(_FROM_ABOVE)).ravel()
+        clearance = self._clearance(candidates, half_width, size)
+        score = clearance - loss - 2.0 * np.clip(size - clearance / _COVERING, 0.0, size)
+        far = slice(_DIRECTIONS * _FAR, None)
+        score[far] -= np.where(self._misleading(centre, candidates[far], distance, half_width + size), 0.6 * size, 0.0)
+        if crowded and clearance[score.argmax()] < _LEGIBLE * size:
             return
         chosen = int(score.argmax())
         best = candidates[chosen]
-        if chosen >= _DIRECTIONS * (len(_RINGS) - 1):  # too far off for the eye to join them
+        if chosen >= _DIRECTIONS * _FAR:  # too far off for the eye to join them
             ends = np.stack([centre, best - np.clip(best - centre, -half_width, half_width) * [1.0, 0.0]]) / self._scale
             self._axes.plot(*ends.T, color=FAINT, linewidth=0.5, zorder=1.6, solid_capstyle="butt")
-        across = np.array([[-half_width, 0.0], [0.0, 0.0], [half_width, 0.0]])
-        self._labels = np.concatenate([self._labels, best + across])
+        box = half_width * np.array([-1.0, 0.0, 1.0])[:, None] + 1j * _HALF_HEIGHT * size * np.array([-1.0, 1.0])
+        self._labels = np.concatenate([self._labels, best + np.stack([box.real, box.imag], axis=-1).reshape(-1, 2)])
         x, y = best / self._scale
         self._axes.text(x, y, text, fontsize=size, color=INK, ha="center", va="center_baseline", zorder=6)
 
@@ -90,6 +109,19 @@ class Labels:
         inside = (candidates[:, 0] - half_width > x0) & (candidates[:, 0] + half_width < x1)
         inside &= (candidates[:, 1] - 0.5 * size > y0) & (candidates[:, 1] + 0.5 * size < y1)
         return np.where(inside, np.minimum(nearest, _ENOUGH * size), -size)
+
+    def _misleading(self, centre: Real, candidates: Real, distance: float, apart: float) -> NDArray[np.bool_]:
+        """(c,) whether candidates (c, 2) are nearer to something solid than ``apart``, or their lines cross it.
+
+        The lines lead back to ``centre``, within ``distance`` of which is what they name.
+        """
+        things = self._solid[np.hypot(*(self._solid - centre).T) > distance] - centre
+        way = candidates - centre
+        found = np.linalg.norm(way[:, None] - things, axis=-1).min(axis=1, initial=np.inf) < apart
+        things = np.concatenate([things, self._labels - centre])
+        share = np.clip(way @ things.T / (way**2).sum(axis=1, keepdims=True), 0.0, 1.0)
+        gap = np.linalg.norm(share[..., None] * way[:, None] - things, axis=-1)
+        return np.asarray(found | (gap.min(axis=1, initial=np.inf) < _FREE))
 
     def _near(self, candidates: Real, reach: float) -> Real:
         """(q, 2) what is occupied within ``reach`` points of any candidate (c, 2), and some more."""

@@ -59,15 +59,19 @@ class Run:
         """
         return pandas().DataFrame(series(self.experiment, self.trajectory, self.metrics))
 
-    def plot(self, name: str = "motion") -> Figure:
+    def plot(self, name: str = "motion", at: Sequence[float] = ()) -> Figure:
         """A figure of ``formation plot`` for one column of a paper: motion, graph, decay or separation.
 
+        Args:
+            name: of the figure.
+            at: times, seconds, at which motion shows the robots; start and end, and of few phases each end, if none.
+
         Raises:
-            InputError: there is none of that name.
+            InputError: there is none of that name, or a time is not one of the run.
         """
         from scenarios.figures import draw  # loads matplotlib
 
-        return draw(self.experiment, self.trajectory, self.metrics, name)
+        return draw(self.experiment, self.trajectory, self.metrics, name, at)
 
     def animate(self, form: Literal["gif", "mp4"] = "gif", speed: float = 4.0, fps: float = 20.0) -> Film:
         """The film of ``formation animate``, which a notebook plays.

@@ -14,10 +14,12 @@ from matplotlib.patches import FancyArrowPatch
 from robots import Arena
 from robots.testbed import COLLISION_DISTANCE
 from scenarios.definition.experiment import Experiment, open_experiment
-from scenarios.figures import FIGURES, names_for
+from scenarios.errors import InputError
+from scenarios.figures import FIGURES, draw, names_for
 from scenarios.figures.decay import places
 from scenarios.figures.floor import limits, placed
-from scenarios.figures.motion import snapshot_rows
+from scenarios.figures.labels import Labels
+from scenarios.figures.motion import rows_at, snapshot_rows
 from scenarios.figures.style import COLUMN, FORMATS, print_style, render
 from scenarios.figures.timelines import unwrapped, written
 from scenarios.measures.metrics import Metrics, measure
@@ -114,6 +116,25 @@ def test_a_maneuver_is_shown_at_its_start_and_at_the_end_of_each_phase(maneuver:
     ]
     for row, segments in zip(rows, sensed, strict=True):
         np.testing.assert_allclose(segments, maneuver.trajectory.points[row][maneuver.experiment.graph.edges])
+
+
+def test_robots_are_shown_at_the_times_that_are_asked_for(shape: Ran) -> None:
+    figure = draw(shape.experiment, shape.trajectory, shape.metrics, "motion", (30.0, 0.0, 7.02))
+    times = ("0 s", "7 s", "30 s")
+    assert set(times) <= set(texts(figure))
+    bodies = [c.get_paths() for c in figure.axes[0].collections if isinstance(c, PolyCollection)]
+    for row, drawn in zip(rows_at(shape.trajectory, (0.0, 7.02, 30.0)), bodies[::2], strict=True):
+        assert abs(shape.trajectory.t[row] - round(shape.trajectory.t[row])) < 0.03
+        expected = placed(shape.experiment.fleet.outlines, shape.trajectory.poses[row])
+        np.testing.assert_allclose([path.vertices[:4] for path in drawn], expected)
+    assert {"start", "later"} <= set(texts(figure))
+    assert "start" not in texts(draw(shape.experiment, shape.trajectory, shape.metrics, "motion", (5.0,)))
+
+
+@pytest.mark.parametrize("time", [-0.1, 60.5, np.nan])
+def test_a_time_that_the_run_does_not_have_is_refused(shape: Ran, time: float) -> None:
+    with pytest.raises(InputError, match="at: expected seconds of the run, 0 to 60, got"):
+        draw(shape.experiment, shape.trajectory, shape.metrics, "motion", (1.0, time))
 
 
 def test_phase_boundaries_are_marked_on_both_error_panels(maneuver: Ran) -> None:
@@ -264,11 +285,30 @@ def test_labels_lie_inside_the_sheet(shape: Ran, maneuver: Ran) -> None:
                     assert box.y1 <= sheet.y1 + 1.0
 
 
-def test_numbers_of_robots_do_not_overlap_each_other(shape: Ran, maneuver: Ran) -> None:
-    for run in (shape, maneuver):
-        figure = run.draw("motion")
+def test_labels_do_not_overlap_each_other_nor_what_they_name(shape: Ran, maneuver: Ran) -> None:
+    for run, at in ((shape, ()), (maneuver, ()), (shape, (0.0, 3.0, 6.0, 10.0, 60.0))):
+        figure = draw(run.experiment, run.trajectory, run.metrics, "motion", at)
+        axes = figure.axes[0]
         with print_style():
             figure.canvas.draw()
-            boxes = [text.get_window_extent() for text in figure.axes[0].texts]
+            boxes = [text.get_window_extent().shrunk(1.0, 0.75) for text in axes.texts]  # figures have no descent
+        rows = rows_at(run.trajectory, at or (0.0, run.trajectory.t[-1]))
+        robots = axes.transData.transform(run.trajectory.points[rows].reshape(-1, 2))
         for i, box in enumerate(boxes):
             assert not any(box.overlaps(other) for other in boxes[:i])
+            assert not any(box.contains(*robot) for robot in robots)
+
+
+def test_a_label_that_is_led_back_does_not_cross_what_is_solid() -> None:
+    figure = Figure(figsize=(2.0, 2.0))
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
+    crowd = 0.5 + 0.2 * np.random.default_rng(0).uniform(-1.0, 1.0, (4000, 2))  # no room near the middle
+    wall = np.stack([np.linspace(0.4, 0.6, 50), np.full(50, 0.62)], axis=1)
+    labels = Labels(axes, crowd, wall)
+    labels.put(np.array([0.5, 0.5]), "7", 8.0)
+    (line,) = axes.lines
+    x, y = np.asarray(line.get_xydata()).T
+    at_wall = np.interp(0.62, np.sort(y), x[np.argsort(y)])
+    assert y.max() < 0.62 or not 0.39 < at_wall < 0.61
+    assert axes.texts[0].get_text() == "7"

@@ -54,6 +54,12 @@ def test_a_run_read_back_is_the_run_that_was_made(finished: Path) -> None:
         np.testing.assert_array_equal(again.trajectory.poses, data["poses"])
 
 
+def test_times_of_the_overview_are_checked_before_anything_is_drawn(copy: Path, cli: Cli) -> None:
+    assert "--at: expected seconds, separated by commas, got '1;2'" in refused(cli, "plot", str(copy), "--at", "1;2")
+    assert "at: expected seconds of the run, 0 to 70, got 71" in refused(cli, "plot", str(copy), "--at", "1,71")
+    assert not (copy / "figure-graph.png").exists()
+
+
 def test_a_run_leaves_its_overview_as_a_picture(finished: Path) -> None:
     assert (finished / "figure-motion.png").read_bytes().startswith(b"\x89PNG")
 
