@@ -124,10 +124,12 @@ def judge(
     floor: Arena = ROBOTARIUM_FLOOR,
     drive: DifferentialDrive = GTERNAL.drive,
     near: Separation | None = None,
+    there: NDArray[np.bool_] | None = None,
 ) -> Verdict:
     """The verdict on a run: times (T,), poses (T, n, 3) of the axle centres and wheel speeds (T, n, 2).
 
-    ``near`` is the separation of the collision centres where the caller has it already: it is the dear part.
+    ``near`` is the separation of the collision centres where the caller has it already: it is the dear part. ``there``
+    (T, O) says which obstacles stand at these times; all where absent.
     """
     x, y = poses[..., 0], poses[..., 1]
     beyond = np.max([floor.x[0] - x, x - floor.x[1], floor.y[0] - y, y - floor.y[1]], axis=0)
@@ -140,7 +142,8 @@ def judge(
         _collision(t, near, centres),
     ]
     if floor.obstacles:
-        gaps = np.min([obstacle.distance(centres) for obstacle in floor.obstacles], axis=0)
+        apart = np.stack([obstacle.distance(centres) for obstacle in floor.obstacles])
+        gaps = (apart if there is None else np.where(there.T[..., None], apart, np.inf)).min(axis=0)
         found.append(_violation("obstacle", t, gaps <= OBSTACLE_DISTANCE, gaps, -gaps, centres))
     fast = speed > fastest_allowed(drive)
     found.append(_violation("actuator", t, fast, speed, speed, poses[..., :2]))

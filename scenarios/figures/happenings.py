@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
 
+from robots import Arena
 from scenarios.definition.events.event import Event
 from scenarios.definition.experiment import Experiment
 from scenarios.figures.palette import INK, agent_colour
@@ -54,6 +57,25 @@ def mark_times(axes: Axes, experiment: Experiment, numbers: bool = False) -> Non
                 xycoords=axes.get_xaxis_transform(), fontsize=SMALL - 1.0, ha="center", va="center",
                 bbox=BADGE | {"edgecolor": _colour(event)}, zorder=6,
             )  # fmt: skip
+
+
+def lasting(experiment: Experiment) -> Arena:
+    """The floor without the obstacles that events place."""
+    passing = [event.obstacle for event in experiment.events]
+    here = tuple(each for each in experiment.arena.obstacles if not any(each is other for other in passing))
+    return replace(experiment.arena, obstacles=here)
+
+
+def draw_passing(axes: Axes, experiment: Experiment) -> list[tuple[Event, Polygon]]:
+    """The obstacles that events place within the run, dashed, as each is there for a while only."""
+    drawn = []
+    for event in shown(experiment):
+        if event.obstacle is not None:
+            patch = Polygon(event.obstacle.outline, facecolor=SPAN, edgecolor=INK, linewidth=0.5, zorder=1)
+            patch.set_linestyle((0, (3, 2)))
+            axes.add_patch(patch)
+            drawn.append((event, patch))
+    return drawn
 
 
 def places(experiment: Experiment, trajectory: Trajectory) -> Iterator[tuple[Event, tuple[float, float]]]:

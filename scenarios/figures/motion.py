@@ -17,6 +17,8 @@ from scenarios.figures.floor import Limits, draw_edges, draw_robots, draw_trails
 from scenarios.figures.happenings import (
     BADGE_BELOW,
     BADGE_RADIUS,
+    draw_passing,
+    lasting,
     mark_places,
     mark_times,
     places,
@@ -107,7 +109,8 @@ def motion(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, at:
 def _floor(
     axes: Axes, experiment: Experiment, trajectory: Trajectory, rows: list[int], shown: Limits, timed: bool
 ) -> None:
-    prepare(axes, experiment.arena, shown)
+    prepare(axes, lasting(experiment), shown)
+    draw_passing(axes, experiment)
     few = experiment.n <= MANY
     draw_trails(axes, trajectory, 0.7 if few else 0.3)
     for row, grey in zip(rows, np.linspace(FIRST_GREY, LAST_GREY, len(rows)), strict=True):

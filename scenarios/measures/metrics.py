@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from robots.testbed import Separation, Verdict, collision_centres, judge, separation
 from scenarios.definition.experiment import Experiment
-from scenarios.measures.clearance import Clearance, clearance
+from scenarios.measures.clearance import Clearance, clearance, standing_at
 from scenarios.measures.late_rates import measured_late_rates
 from scenarios.measures.tracking import Tracking, predicted_ends, track
 from scenarios.measures.window import WINDOW, Window, trailing
@@ -87,7 +87,13 @@ def measure(experiment: Experiment, trajectory: Trajectory) -> Metrics:
     window = trailing(trajectory.t, errors) if experiment.noisy else None
     judged = error_sum if window is None else np.abs(window.mean).sum(axis=-1)
     verdict = judge(
-        trajectory.t, trajectory.poses, trajectory.wheel_speeds, experiment.arena, experiment.fleet.drive, near
+        trajectory.t,
+        trajectory.poses,
+        trajectory.wheel_speeds,
+        experiment.arena,
+        experiment.fleet.drive,
+        near,
+        standing_at(experiment, trajectory.t),
     )
     return Metrics(
         angle_errors=errors,

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from scenarios.definition.experiment import Experiment
 from scenarios.figures.floor import limits, placed, prepare, wedges
-from scenarios.figures.happenings import mark_times, news
+from scenarios.figures.happenings import draw_passing, lasting, mark_times, news
 from scenarios.figures.palette import FAINT, INK, agent_colour
 from scenarios.figures.style import SMALL, panel
 from scenarios.figures.timelines import MANY, draw_error_sum, mark_phases
@@ -61,7 +61,8 @@ class Film:
         self.size = width - width % 2, height - height % 2
         shown = limits(experiment.arena, trajectory.poses)
         self.floor = panel(self._figure, LEFT, BOTTOM + ERRORS + BETWEEN, floor_width, floor_height)
-        prepare(self.floor, experiment.arena, shown)
+        prepare(self.floor, lasting(experiment), shown)
+        self._passing = draw_passing(self.floor, experiment)
         places = ";  + predicted places" if experiment.predicted else ""
         self.floor.set_title(f"{experiment.file.name}, {experiment.plant}, {speed:g} x{places}", loc="left", pad=4.0)
         self._errors = panel(self._figure, LEFT, BOTTOM, WIDTH - LEFT - RIGHT, ERRORS)
@@ -127,13 +128,17 @@ class Film:
         moving: list[Artist] = [self._edges, self._ghosts, self._bodies, self._noses, self._dots]
         for artist in (self._trails, *moving):
             self.floor.add_artist(artist)
-        for artist in (self._trails, *moving, *self._numbers, self._clock, self._news, self._cursor):
+        passing = [patch for _, patch in self._passing]
+        for artist in (*passing, self._trails, *moving, *self._numbers, self._clock, self._news, self._cursor):
             artist.set_animated(True)
 
     def _move(self, row: int) -> None:
         """Draw what moves, as it is in a row of the trajectory."""
         points, poses = self._trajectory.points[row], self._trajectory.poses[row]
-        fleet = self._experiment.fleet
+        fleet, t = self._experiment.fleet, float(self._trajectory.t[row])
+        for event, patch in self._passing:
+            if event.lasts(t):
+                self.floor.draw_artist(patch)
         self._edges.set_segments(list(points[self._edges_at(row)]))
         if self._predicted is not None:
             self._ghosts.set_data(*self._predicted[row].T)
@@ -147,7 +152,6 @@ class Film:
         for number, point in zip(self._numbers, points + 0.6 * fleet.widest, strict=False):
             number.set_position((point[0], point[1]))
             self.floor.draw_artist(number)
-        t = float(self._trajectory.t[row])
         phases = self._experiment.phases
         phase = f"{phases[self._trajectory.phase[row]].name}, " if len(phases) > 1 else ""
         self._clock.set_text(f"{phase}{t:.1f} s")

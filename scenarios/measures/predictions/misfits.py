@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.testbed import COLLISION_DISTANCE, OBSTACLE_DISTANCE, collision_centres, separation
+from scenarios.definition.events.event import SAME_TIME
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.tracking import predicted_ends
+from scenarios.simulation.outages import standing
 
 Real = NDArray[np.float64]
 
@@ -30,10 +32,11 @@ def misfits(experiment: Experiment, start: Real) -> list[str]:
     if not experiment.predicted or experiment.plant == "single_integrator":
         return []
     ends = predicted_ends(experiment, start)
+    times = np.cumsum([phase.duration for phase in experiment.phases]) - 2.0 * SAME_TIME
     return [
         f"phase {phase.name} ends with {what}"
-        for phase, end in zip(experiment.phases, ends, strict=True)
-        for what in _at_end(experiment, end)
+        for phase, end, t in zip(experiment.phases, ends, times.tolist(), strict=True)
+        for what in _at_end(experiment, end, t)
     ]
 
 
@@ -46,7 +49,8 @@ def start_misfits(experiment: Experiment, points: Real, headings: Real) -> list[
         return []
     poses = experiment.fleet.nid.poses(points, headings)
     centres = collision_centres(poses)
-    found = [*_too_close(experiment, centres), *_in_a_wall(experiment, centres), *_in_an_obstacle(experiment, centres)]
+    found = [*_too_close(experiment, centres), *_in_a_wall(experiment, centres)]
+    found += _in_an_obstacle(experiment, centres, 0.0)
     outside = np.flatnonzero(~experiment.arena.contains(poses[:, :2]))
     found += [f"{_at(experiment, row, points)}: its axle is off the floor" for row in outside[:MOST_NAMED]]
     if len(outside) > MOST_NAMED:
@@ -54,7 +58,7 @@ def start_misfits(experiment: Experiment, points: Real, headings: Real) -> list[
     return [f"the run starts with {what}" for what in found]
 
 
-def _at_end(experiment: Experiment, end: Real) -> Iterator[str]:
+def _at_end(experiment: Experiment, end: Real, t: float) -> Iterator[str]:
     yield from _too_close(experiment, end)
     depth, ahead = _depth(experiment, end), np.broadcast_to(experiment.fleet.nid.projection_distance, len(end))
     row = int(depth.argmin())
@@ -62,7 +66,7 @@ def _at_end(experiment: Experiment, end: Real) -> Iterator[str]:
         yield f"{_at(experiment, row, end)}: off the floor"
     else:
         yield from _in_a_wall(experiment, end)
-    yield from _in_an_obstacle(experiment, end)
+    yield from _in_an_obstacle(experiment, end, t)
 
 
 def _depth(experiment: Experiment, points: Real) -> Real:
@@ -91,8 +95,12 @@ def _in_a_wall(experiment: Experiment, points: Real) -> Iterator[str]:
         yield f"{_at(experiment, row, points)}: {depth[row]:.3f} m from a wall, in which its chassis stands"
 
 
-def _in_an_obstacle(experiment: Experiment, points: Real) -> Iterator[str]:
-    for number, obstacle in enumerate(experiment.arena.obstacles, start=1):
+def _in_an_obstacle(experiment: Experiment, points: Real, t: float) -> Iterator[str]:
+    """Of the obstacles that stand at a time, seconds."""
+    there = zip(experiment.arena.obstacles, standing(experiment, t), strict=True)
+    for number, (obstacle, stands) in enumerate(there, start=1):
+        if not stands:
+            continue
         gaps = obstacle.distance(points)
         if gaps.min() < OBSTACLE_DISTANCE:
             where = _at(experiment, int(gaps.argmin()), points)

@@ -6,9 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from robots.testbed import OBSTACLE_DISTANCE
 from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.errors import InputError
+from scenarios.figures.films.film import Film
+from scenarios.figures.style import print_style
 from scenarios.measures.metrics import measure
+from scenarios.measures.predictions.remarks import remarks
 from scenarios.measures.predictions.stops import spreads
 from scenarios.measures.result import result
 from scenarios.simulation.loop import simulate
@@ -180,6 +184,34 @@ def test_an_obstacle_stops_robots_from_its_time_on_and_until_it_is_gone() -> Non
     found = simulate(experiment, 0)
     gap = experiment.arena.obstacles[0].distance(found.points[found.t >= 2.5])
     assert gap.min() > 0.0
+
+
+def test_an_obstacle_is_judged_while_it_stands_and_at_no_other_time() -> None:
+    """One stands where agent 4 starts once that has gone, the other where agent 6 will be and is away by then."""
+    plain = opened(plant="saturated")
+    start, end = plain.initial_points(0)[3], simulate(plain, 0).points[-1, 5]
+    early = {"t_s": 0.0, "until_s": 1.0, "kind": "obstacle", "vertices_m": [end.tolist()], "radius_m": 0.02}
+    late = {"t_s": 6.0, "kind": "obstacle", "vertices_m": [start.tolist()], "radius_m": 0.02}
+    experiment = opened(early, late, plant="saturated")
+    metrics = measure(experiment, simulate(experiment, 0))
+    assert "obstacle" not in [each.kind for each in metrics.verdict.violations]
+    assert metrics.clearance is not None
+    assert metrics.clearance.points.distance.min() > OBSTACLE_DISTANCE
+    assert not any("obstacle" in line for line in remarks(experiment, 0))
+    always = opened({**early, "until_s": 7.9}, {**late, "t_s": 0.0}, plant="saturated")
+    assert "obstacle" in [each.kind for each in measure(always, simulate(always, 0)).verdict.violations]
+    assert any("run starts" in line and "obstacle 2" in line for line in remarks(always, 0))
+
+
+def test_a_film_shows_an_obstacle_of_an_event_while_it_stands() -> None:
+    experiment = opened(one("obstacle", vertices_m=[[1.2, 0.8]], radius_m=0.1, until_s=UNTIL), plant="saturated")
+    trajectory = simulate(experiment, 0)
+    with print_style():
+        film = Film(experiment, trajectory, measure(experiment, trajectory), 1.0, 1.0)
+    x, y = film.floor.transData.transform([1.2, 0.8]).astype(int)
+    with print_style():
+        seen = [tuple(frame[frame.shape[0] - y, x, :3]) != (255, 255, 255) for frame in film.frames()]
+    assert seen == [AT <= round(trajectory.t[row]) < UNTIL for row in film.rows]
 
 
 @pytest.mark.parametrize("safety", ["none", "decentralised"])
