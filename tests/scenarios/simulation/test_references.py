@@ -110,23 +110,24 @@ def test_all_agents_end_where_the_reference_puts_them() -> None:
     np.testing.assert_allclose(trajectory.points[-1], reference(experiment, trajectory)[-1], atol=1e-7)
 
 
-def test_wheels_are_outrun_when_and_by_whom_it_is_told(tmp_path: Path) -> None:
+@pytest.mark.parametrize("safety", ["none", "decentralised"])
+def test_wheels_are_outrun_when_and_by_whom_it_is_told(tmp_path: Path, safety: str) -> None:
     text = (LIBRARY / "circle.toml").read_text(encoding="utf-8")
     head, rest = text.split("[reference]")
     _, rest = rest.split("[arena]")
     points = 'kind = "way-points"\nfile = "way.csv"\ndisplacement_m = [0.4, 0.0]\n'
     (tmp_path / "way.toml").write_text(f"{head}[reference]\n{points}\n[arena]{rest}", encoding="utf-8")
     (tmp_path / "way.csv").write_text("t_s,x_m,y_m,turn_deg\n0,0,0,0\n40,0,0,0\n60,0.3,0,180\n80,0.5,0,540\n")
-    changes = ("plant.name=saturated", "safety.filter=none", "arena.walls=false")
+    changes = ("plant.name=saturated", f"safety.filter={safety}", "arena.walls=false")
     experiment = open_experiment(str(tmp_path / "way.toml"), changes)
     known = course(experiment, experiment.initial_points(0))
     assert known is not None
     assert known.outrun is not None
     trajectory = simulate(experiment, 0)
     limit = experiment.robot.drive.wheel_speed_limit
-    at_limit = np.abs(trajectory.wheel_speeds).max(axis=-1) >= limit * (1.0 - 1e-9)
+    at_limit = np.abs(trajectory.wheel_speeds).max(axis=-1) >= limit * (1.0 - 2e-6)  # the filter stays 1e-6 below
     row = int(np.flatnonzero(at_limit.any(axis=1) & (trajectory.t > 30.0))[0])
-    assert trajectory.t[row] == pytest.approx(known.outrun.time, abs=0.1)
+    assert trajectory.t[row] == pytest.approx(known.outrun.time, abs=0.15)
     assert np.flatnonzero(at_limit[row]).tolist() == [known.outrun.row]
 
 
