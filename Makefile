@@ -72,6 +72,7 @@ figures: $(STAMP) ## draw the figures of the documents, the film included
 		cp runs/figures/$$name/figure-motion.png docs/images/figure-$$name.png || exit 1; done
 	$(BIN)/formation plot runs/figures/gap --format png
 	cp runs/figures/gap/figure-separation.png docs/images/figure-gap-separation.png
+	$(BIN)/python docs/palette.py docs/images
 
 dist: ## build wheel and source archive, check them, run a scenario with each in an empty environment
 	rm -rf $(DIST) dist build

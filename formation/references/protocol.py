@@ -54,6 +54,23 @@ NO_BENDS: Real = np.empty(0)
 """Of a reference that is smooth."""
 
 
+def check_times(times: Real) -> None:
+    """Refuse times (P,), seconds, at which nothing can be told one after another from the begin on.
+
+    Raises:
+        ValueError: fewer than two, the first is not 0, or one is not after the one before it.
+    """
+    wanted = "times must begin with 0 and increase, at least two of them"
+    if len(times) < 2:
+        raise ValueError(f"{wanted}, got {len(times)}")
+    if times[0] != 0.0:
+        raise ValueError(f"{wanted}, the first is {times[0]:g}")
+    late = np.flatnonzero(~(np.diff(times) > 0.0))
+    if late.size:
+        place = int(late[0])
+        raise ValueError(f"{wanted}, number {place + 2} is {times[place + 1]:g} after {times[place]:g}")
+
+
 def pair_displacement(
     reference: Reference, e_12: complex, delta: complex | None, first_follower: str, feedforward: bool, t: Real | float
 ) -> Complex:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from formation.plane import Complex, Real
+from formation.references.protocol import check_times
 
 
 class Ramps:
@@ -26,8 +27,7 @@ class Ramps:
         Raises:
             ValueError: times that do not begin with 0 and increase, or scales that are not positive.
         """
-        if len(times) < 2 or times[0] != 0.0 or not (np.diff(times) > 0.0).all():
-            raise ValueError("times must begin with 0 and increase, at least two of them")
+        check_times(times)
         scales = np.ones(len(times)) if scales is None else scales
         turns = np.zeros(len(times)) if turns is None else turns
         if not (scales > 0.0).all():

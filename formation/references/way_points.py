@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from formation.plane import Complex, Real
-from formation.references.protocol import NO_BENDS
+from formation.references.protocol import NO_BENDS, check_times
 
 
 class WayPoints:
@@ -28,8 +28,7 @@ class WayPoints:
         """
         from scipy.interpolate import CubicSpline
 
-        if len(times) < 2 or times[0] != 0.0 or not (np.diff(times) > 0.0).all():
-            raise ValueError("times must begin with 0 and increase, at least two of them")
+        check_times(times)
         if not (scales > 0.0).all():
             raise ValueError("scales must be positive")
         log_factor = np.log(scales / scales[0]) + 1j * (turns - turns[0])

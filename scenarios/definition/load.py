@@ -230,8 +230,15 @@ def _descend(place: Any, part: str, change: str) -> Any:
 
 
 def _explain(error: ValidationError, data: Mapping[str, Any]) -> str:
-    """One line for the first error: field, value and what was expected."""
-    first = error.errors(include_url=False)[0]
+    """One line for the first error: field, value and what was expected.
+
+    An unknown key goes before one that is missing beside it, which may be what it should be.
+    """
+    found = error.errors(include_url=False)
+    first = found[0]
+    if first["type"] == "missing":
+        beside = (each for each in found if each["loc"][:-1] == first["loc"][:-1] and each["type"] == "extra_forbidden")
+        first = next(beside, first)
     location = first["loc"]
     field = _shortened(_field_name(location, data))
     if first["type"] == "extra_forbidden":

@@ -88,10 +88,9 @@ def _legend(experiment: Experiment, slowest: float | None) -> list[Line2D]:
     if slowest is not None:
         handles.append(Line2D([], [], color=INK, linewidth=0.8, linestyle=":", label=f"late, {slowest:.2f} /s"))
     if experiment.n - agents.FIRST_ORDINARY <= MANY:
-        for row, rate in zip(
-            experiment.target.graph.followers.tolist(), decay_rates(experiment.target).tolist(), strict=True
-        ):
-            text = f"agent {experiment.number(row)}, {rate:.2f} /s"
+        rates = decay_rates(experiment.target) * (1.0 if experiment.own_gains is None else experiment.own_gains)
+        for row, rate in zip(experiment.target.graph.followers.tolist(), rates.tolist(), strict=True):
+            text = experiment.name(row) if experiment.shapes else f"{experiment.name(row)}, {rate:.2f} /s"
             handles.append(Line2D([], [], color=agent_colour(row), linewidth=1.4, label=text))
     return handles
 
@@ -118,11 +117,16 @@ def places(experiment: Experiment, trajectory: Trajectory, index: int) -> Real:
     where they are at the moment decides.
     """
     rows = _rows(trajectory, index)
+    return _where(experiment, index, trajectory.t[rows], trajectory.points[rows])
+
+
+def _where(experiment: Experiment, index: int, t: Real, points: Real) -> Real:
+    """The same of states (T', n, 2), metres, measured or exact, of a phase at times t (T',), seconds."""
     if experiment.phases[index].reference is not None:
-        return placed(experiment, trajectory.points[rows])
-    leader, first = trajectory.points[rows[-1], : agents.FIRST_ORDINARY]
+        return placed(experiment, points)
+    leader, first = points[-1, : agents.FIRST_ORDINARY]
     end = end_configuration(experiment.of_phase(index).formation, leader, first)
-    ahead = (trajectory.t[rows[-1]] - trajectory.t[rows])[:, None] * np.array(experiment.phases[index].velocity)
+    ahead = (t[-1] - t)[:, None] * np.array(experiment.phases[index].velocity)
     return end - ahead[:, None, :]
 
 
@@ -134,8 +138,7 @@ def _draw_phase(axes: Axes, experiment: Experiment, trajectory: Trajectory, inde
     exact = None
     if moves_exactly(experiment):
         ideal = motion(experiment, trajectory.points[rows[0]], index)[: len(rows)]
-        there = where if experiment.phases[index].reference is None else placed(experiment, ideal)
-        exact = np.linalg.norm(ideal - there, axis=-1)
+        exact = np.linalg.norm(ideal - _where(experiment, index, t, ideal), axis=-1)
     for row in experiment.target.graph.followers.tolist():
         axes.semilogy(t, distances[:, row], color=agent_colour(row), linewidth=0.9, label=f"measured {row}")
         if exact is not None:
@@ -143,8 +146,8 @@ def _draw_phase(axes: Axes, experiment: Experiment, trajectory: Trajectory, inde
                 t, exact[:, row], color=agent_colour(row), linewidth=0.6, linestyle=DASHED, label=f"predicted {row}"
             )
     farthest = distances[:, agents.FIRST_ORDINARY :].max(axis=1)
-    near = np.flatnonzero(farthest < NEAREST)
-    until = t[near[0]] if near.size else t[-1]
+    far = np.flatnonzero(farthest >= NEAREST)
+    until = t[min(far[-1] + 1, len(t) - 1)] if far.size else 0.0
     axes.set(xlim=(0.0, max(until, t[-1] * 0.1)), ylim=(NEAREST, 2.5 * farthest.max()), ylabel="distance (m)")
     axes.yaxis.set_major_locator(LogLocator(numticks=5))
     axes.yaxis.set_minor_locator(NullLocator())

@@ -7,6 +7,9 @@ from typing import Any
 NO_PREDICTION = "no closed-form prediction for an own law or a leaderless one: `formation audit` measures what it does"
 """What stands where the theory speaks of the other laws."""
 
+CHANGING = "changing"
+"""What stands for a command that a reference changes all the time."""
+
 MOST_PHASES = 12
 """Phases that a table tells of."""
 

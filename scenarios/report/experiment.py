@@ -15,7 +15,7 @@ from scenarios.documents import cell
 from scenarios.measures.late_rates import expected_late_rates
 from scenarios.measures.predictions.forecast import NEAR, PhaseForecast, forecast
 from scenarios.measures.predictions.remarks import remarks
-from scenarios.report.cells import NO_PREDICTION, chosen, digits, place
+from scenarios.report.cells import CHANGING, NO_PREDICTION, chosen, digits, place
 from scenarios.report.closed_forms import print_closed_forms
 from scenarios.report.course import print_course
 from scenarios.report.happenings import print_plan
@@ -151,8 +151,8 @@ def _print_forecast(
         table.add_row(
             escape(phase.name),
             f"{ends[index]:g}",
-            place(phase.velocity),
-            "-" if phase.delta is None else place(phase.delta),
+            place(phase.velocity) if phase.reference is None else CHANGING,
+            "-" if phase.delta is None else place(phase.delta) if phase.reference is None else CHANGING,
             f"{similarity.scale:.4f}",
             f"{np.degrees(similarity.angle):.2f}",
             place(similarity.translation),

@@ -55,4 +55,6 @@ def _point(t: float, values: tuple[float, ...], place: str) -> dict[str, Any]:
     if len(values) not in (2, 4) or not all(map(math.isfinite, values)):
         raise InputError(f"{place}: expected (x_m, y_m) or ({', '.join(MEANINGS)}), finite, got {values!r:.80}")
     x, y, *rest = values
+    if rest and rest[0] <= 0.0:
+        raise InputError(f"{place}: scale: expected above 0, got {rest[0]:g}")
     return {"t_s": t, "position_m": [x, y], **dict(zip(MEANINGS[2:], rest, strict=False))}

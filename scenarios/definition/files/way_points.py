@@ -16,6 +16,9 @@ COLUMNS = ("t_s", "x_m", "y_m", "scale", "turn_deg")
 
 REQUIRED = COLUMNS[:3]
 
+WAY_POINTS = "way-points"
+"""The kind of reference that may come from a file."""
+
 
 def with_file(data: dict[str, Any], scenario: str, folder: Path) -> dict[str, Any]:
     """A parsed scenario in which the way-points of ``reference.file`` stand in the place of the file's name.
@@ -33,9 +36,13 @@ def with_file(data: dict[str, Any], scenario: str, folder: Path) -> dict[str, An
         return data
     if "points" in table:
         raise InputError(f"{scenario}: reference.file: expected either file or points, got both")
+    if table.get("kind", WAY_POINTS) != WAY_POINTS:
+        raise InputError(f'{scenario}: reference.file: only for kind = "{WAY_POINTS}", got "{table["kind"]}"')
     path = folder / table["file"]
     if path.suffix == ".py":
         return _with_function(data, table, scenario, path)
+    if "function" in table:
+        raise InputError(f"{scenario}: reference.function: only with a Python file, NAME.py, got {path.name}")
     try:
         text = read_regular(path).decode("utf-8-sig")
     except (OSError, ValueError) as error:  # also bytes that are no text, and a path with a null byte
@@ -68,6 +75,8 @@ def read_points(text: str, path: str) -> list[dict[str, Any]]:
     for name in header:
         if name not in COLUMNS:
             raise InputError(f"{path}: line 1: unknown column {name!r}, {did_you_mean(name, COLUMNS)}")
+        if header.count(name) > 1:
+            raise InputError(f"{path}: line 1: column {name} is there {header.count(name)} times")
     for name in REQUIRED:
         if name not in header:
             raise InputError(f"{path}: line 1: column {name} is missing, expected {', '.join(COLUMNS)}")

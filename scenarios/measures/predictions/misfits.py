@@ -40,6 +40,28 @@ def misfits(experiment: Experiment, start: Real) -> list[str]:
     ]
 
 
+def too_wide(experiment: Experiment) -> list[str]:
+    """One sentence where robots with a body or a projection distance of their own may touch within the filter's rules.
+
+    A filter keeps projected points apart, whichever way the robots turn about these.
+    """
+    alike = all(agent.robot is None for agent in experiment.scenario.agents)
+    if alike or experiment.safety not in ("decentralised", "centralised"):
+        return []
+    ahead = np.broadcast_to(experiment.fleet.nid.projection_distance, experiment.n)
+    corners = experiment.fleet.outlines - np.stack([ahead, np.zeros(experiment.n)], axis=-1)[:, None]
+    reach = np.linalg.norm(corners, axis=-1).max(axis=-1)
+    other, row = np.argsort(reach, kind="stable")[-2:].tolist()
+    kept = experiment.filter_settings.safe_distance
+    if reach[row] + reach[other] <= kept:
+        return []
+    return [
+        f"the hull of {experiment.name(row)} reaches {reach[row]:.3f} m from its projected point and that of "
+        f"{experiment.name(other)} {reach[other]:.3f} m: they may touch, the safety filter keeps {kept:g} m between "
+        "the points (safety.safe_distance_m)"
+    ]
+
+
 def start_misfits(experiment: Experiment, points: Real, headings: Real) -> list[str]:
     """One sentence for each thing that does not fit at the start, projected points (n, 2), metres, and headings (n,).
 

@@ -9,7 +9,7 @@ import numpy as np
 from formation import decay_rates
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.predictions.course import too_fast
-from scenarios.measures.predictions.misfits import misfits, start_misfits
+from scenarios.measures.predictions.misfits import misfits, start_misfits, too_wide
 from scenarios.measures.predictions.way import in_the_way
 
 LEAST_EXPONENT = 1.0
@@ -26,6 +26,7 @@ def remarks(experiment: Experiment, seed: int) -> list[str]:
     met = [] if told else in_the_way(experiment, points)  # a way to where nobody fits is no other matter
     return [
         *(f"does not fit: {misfit}" for misfit in told),
+        *(f"too wide: {wide}" for wide in too_wide(experiment)),
         *(f"in the way: {thing}" for thing in met),
         *(f"too slow: {slow}" for slow in _slow(experiment)),
         *(f"too fast: {fast}" for fast in too_fast(experiment, points)),

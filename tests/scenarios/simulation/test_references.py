@@ -151,7 +151,10 @@ def test_a_file_of_way_points_is_the_scenario_with_these_points(tmp_path: Path) 
         ("t_s,x_m,y_m,skale\n", "line 1: unknown column 'skale', did you mean 'scale'"),
         ("t_s,x_m,y_m\n0,0\n", "line 2: expected 3 cells, got 2"),
         ("t_s,x_m,y_m\n0,0,0\n1,here,0\n", "line 3: x_m: expected a number, got 'here'"),
-        ("t_s,x_m,y_m\n0,0,0\n", "times must begin with 0 and increase"),
+        ("t_s,x_m,y_m\n0,0,0\n", "at least two of them, got 1"),
+        ("t_s,x_m,y_m\n1,0,0\n2,0,0\n", "the first is 1"),
+        ("t_s,x_m,y_m\n0,0,0\n5,0,0\n3,0,0\n", "number 3 is 3 after 5"),
+        ("t_s,x_m,y_m,x_m\n0,0,0,0\n", "line 1: column x_m is there 2 times"),
         ("t_s,x_m,y_m\n0,0,0\n1,nan,0\n", r"reference.points\[2\].position_m"),
         (None, "cannot be read: No such file"),
     ],
@@ -176,6 +179,11 @@ def test_a_file_that_holds_no_way_points_is_refused_with_its_place(
         (("reference.kind=ellipse",), "reference.height_m: missing, the ellipse needs it"),
         (("reference.speed_m_s=0.1",), "expected either period_s or speed_m_s, got both"),
         (("reference.kind=way-points",), "reference.width_m: only for closed curves"),
+        (
+            ("reference={kind='way-points', points=[{t=0.0, position_m=[0, 0]}]}",),
+            r"points\[1\].t: unknown key, known: t_s",
+        ),
+        (("reference.file=way.csv",), 'reference.file: only for kind = "way-points", got "circle"'),
         (("reference.displacement_m=[0, 0]",), "reference.displacement_m: agents 1 and 2 must not"),
         (("law.activation=sequential",), "law.feedforward: followers that wait cannot follow"),
         (("law.name=displacement", "law.first_follower=stationary"), "law.feedforward: only for law.name"),
@@ -274,6 +282,9 @@ def way(t):
 def short(t):
     return (1.0,)
 
+def shrinking(t):
+    return 0.0, 0.0, 1.0 - t / 45.0, 0.0
+
 def failing(t):
     return t / 0.0, 0.0
 """
@@ -307,9 +318,11 @@ def test_a_python_function_is_followed_as_the_curve_that_it_describes(tmp_path: 
         ('file = "way.py"', "reference.function: missing, the name of a function in"),
         ('file = "way.py"\nfunction = "wya"', "has no function 'wya', did you mean 'way'"),
         ('file = "way.py"\nfunction = "short"', r"short\(0\): expected \(x_m, y_m\) or \(x_m, y_m, scale, turn_deg\)"),
-        ('file = "way.py"\nfunction = "failing"', r"way.py:11: failing\(0\) raised ZeroDivisionError"),
+        ('file = "way.py"\nfunction = "failing"', r"way.py:14: failing\(0\) raised ZeroDivisionError"),
         ('file = "no.py"\nfunction = "way"', "reference.file: no such file"),
         ('function = "way"\npoints = []', "reference.function: only with reference.file, a Python file"),
+        ('file = "way.toml"\nfunction = "way"', r"reference.function: only with a Python file, NAME.py, got way.toml"),
+        ('file = "way.py"\nfunction = "shrinking"', r"shrinking\(45\): scale: expected above 0, got 0"),
     ],
 )
 def test_a_function_that_makes_no_way_is_refused_with_its_place(tmp_path: Path, table: str, message: str) -> None:

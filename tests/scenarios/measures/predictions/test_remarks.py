@@ -123,3 +123,17 @@ def test_small_numbers_keep_their_digits(cli: Cli) -> None:
     assert code == DONE
     assert "0.0000" not in out
     assert "too slow: agent 3" in out
+
+
+def test_hulls_that_reach_beyond_what_the_filter_keeps_are_told_of_robots_that_differ() -> None:
+    def told(robot: str, *changes: str) -> list[str]:
+        experiment = open_experiment("shape", (f"agents.5.robot={robot}", *changes))
+        return [line for line in remarks(experiment, 0) if line.startswith("too wide")]
+
+    assert told("{width_m=0.11}") == []
+    (line,) = told("{width_m=0.20}")
+    assert "the hull of agent 5 reaches 0.112 m from its projected point and that of agent 6 0.074 m" in line
+    (line,) = told("{projection_distance_m=0.06}")
+    assert "agent 5 reaches 0.101 m" in line
+    assert told("{width_m=0.20}", "safety.safe_distance_m=0.19") == []
+    assert told("{width_m=0.20}", "safety.filter=none") == []
