@@ -11,10 +11,10 @@ displacement is one more agent of the cascade, de/dt = delta(t) - e, that delta(
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import count, islice, pairwise
+from itertools import accumulate, count, islice, pairwise, repeat, tee
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from formation.analysis.first_follower import Motion, motion
 from formation.laws.first_follower import EDGE_LAWS
 from formation.maneuver import Phase
 from formation.plane import Complex, Real, as_vectors
+from formation.references.protocol import NO_BENDS
 
 NODES = 8
 LONGEST_STEP = 0.1
@@ -64,20 +65,29 @@ def follow(cascade: Cascade, start: Complex, first: Motion, step: float) -> Iter
 
 
 def steer(
-    cascade: Cascade, start: Complex, delta: Callable[[Real], Complex], bends: Real, step: float, begin: float
+    cascade: Cascade,
+    start: Complex,
+    delta: Callable[[Real], Complex],
+    bends: Real,
+    step: float,
+    begin: float,
+    velocities: Iterable[Complex] | None = None,
 ) -> Iterator[Complex]:
     """Likewise behind a first follower by displacement, while the displacement that it is told changes.
 
     Args:
-        cascade: its first follower's rate is 1.
+        cascade: its first follower's rate is 1, or 0 where it stands still.
         start: (n,) or (n, k) positions at ``begin``, complex metres.
         delta: maps times (...), seconds, to displacements (...), complex metres.
         bends: times at which delta is not smooth, increasing.
         step: seconds.
         begin: seconds.
+        velocities: (n,) of each step, complex m/s, what each agent takes v_r for, as many as steps; all take the same
+            where absent, and then it never ends.
     """
     q, steered = start - start[agents.LEADER], agents.FIRST_FOLLOWER
-    for index in count(1):
+    own = repeat(None) if velocities is None else iter(velocities)
+    for index, velocity in enumerate(own, start=1):
         yield q
         low, high = begin + step * (index - 1), begin + step * index
         inside = bends[(bends > low + NEGLIGIBLE * step) & (bends < high - NEGLIGIBLE * step)].tolist()
@@ -88,7 +98,20 @@ def steer(
             for part in range(parts):
                 stretch = _Stretch.over(cascade, length / parts, steered)
                 state = stretch.advance(state, delta, edge + part * length / parts)
+        if velocity is not None:
+            offset = (velocity - velocity[agents.LEADER])[steered:]
+            state = state + (_summed(cascade, step)[steered:, steered:] @ offset).reshape(-1, *(1,) * (state.ndim - 1))
         q = np.concatenate([np.zeros_like(q[:steered]), state])
+    yield q
+
+
+@lru_cache(maxsize=KEPT)
+def _summed(cascade: Cascade, h: float) -> Complex:
+    """(n, n) the integral of e^{M s} from 0 to h: what velocities of 1 m/s that are held for so long come to."""
+    n = cascade.n
+    whole = np.zeros((2 * n, 2 * n), dtype=np.complex128)
+    whole[:n, :n], whole[:n, n:] = cascade.whole, np.eye(n)
+    return exponential(lambda states: (whole @ states) * h, 2 * n, h * (cascade.norm + 1.0))[:n, n:]
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,15 +146,47 @@ def ideal(
 
     On a reference, which begins so many seconds into it, the first follower stands still or is steered by displacement.
     """
-    leader, reference, delta = start[agents.LEADER], phase.reference, phase.displacement
-    if reference is None or delta is None or first_follower == "stationary":
+    leader, delta = start[agents.LEADER], phase.displacement
+    if phase.reference is None or delta is None or first_follower == "stationary":
         first = motion(first_follower, start[agents.FIRST_FOLLOWER] - leader, delta)
         moved = follow(cascade, start, first, step)
     else:
-        steered = Cascade(cascade.graph, cascade.weights, np.concatenate([[1.0], cascade.rates[1:]]))
-        moved = steer(steered, start, lambda t: delta * reference.factor(t), reference.bends, step, begin)
+        moved = steer(*_steered(cascade, start, phase, first_follower), step, begin)
     for index, q in enumerate(moved):
         yield q + (leader + _way(phase, begin, step * index))
+
+
+def informed(
+    cascade: Cascade,
+    start: Complex,
+    phase: Phase,
+    first_follower: str,
+    period: float,
+    velocities: Iterable[Complex],
+    begin: float = 0.0,
+) -> Iterator[Complex]:
+    """The same where each agent moves with what it takes v_r for, (n,) of each period, complex m/s, held meanwhile.
+
+    The first follower stands still or is steered by displacement.
+    """
+    own, first = tee(velocities)
+    moved = steer(*_steered(cascade, start, phase, first_follower), period, begin, own)
+    leaders = accumulate((velocity[agents.LEADER] * period for velocity in first), initial=start[agents.LEADER])
+    for q, leader in zip(moved, leaders, strict=False):
+        yield q + leader
+
+
+def _steered(
+    cascade: Cascade, start: Complex, phase: Phase, first_follower: str
+) -> tuple[Cascade, Complex, Callable[[Real], Complex], Real]:
+    """The arguments of :func:`steer` of a phase, whose first follower stands still or is steered by displacement."""
+    reference, delta = phase.reference, phase.displacement
+    if delta is None or first_follower == "stationary":
+        return cascade, start, np.zeros_like, NO_BENDS
+    loop = Cascade(cascade.graph, cascade.weights, np.concatenate([[1.0], cascade.rates[1:]]))
+    if reference is None:
+        return loop, start, lambda t: np.full_like(t, delta, dtype=np.complex128), NO_BENDS
+    return loop, start, lambda t: delta * reference.factor(t), reference.bends
 
 
 def _way(phase: Phase, begin: float, elapsed: float) -> complex:
@@ -142,24 +197,32 @@ def _way(phase: Phase, begin: float, elapsed: float) -> complex:
 
 
 def held(
-    cascade: Cascade, start: Complex, phase: Phase, first_follower: str, period: float, begin: float = 0.0
+    cascade: Cascade,
+    start: Complex,
+    phase: Phase,
+    first_follower: str,
+    period: float,
+    begin: float = 0.0,
+    velocities: Iterable[Complex] | None = None,
 ) -> Iterator[Complex]:
     """The same where each command is held over a control period, seconds, as a digital controller does.
 
-    The points go straight while a command is held: those of wheeled robots do so once they are slow.
+    The points go straight while a command is held: those of wheeled robots do so once they are slow. ``velocities`` are
+    what each agent takes v_r for, as in :func:`informed`; v_r where absent.
     """
     delta, velocity, reference = phase.displacement, complex(*phase.velocity), phase.reference
     law = EDGE_LAWS["stationary" if delta is None else first_follower]
     shape = Cascade(cascade.graph, cascade.weights, np.concatenate([[0.0], cascade.rates[1:]]))
     p, told = start, delta or 0j
-    for index in count():
+    for index, own in enumerate(repeat(None) if velocities is None else velocities):
         yield p
         if reference is not None:
             velocity = complex(reference.velocity(begin + period * index))
             told = (delta or 0j) * complex(reference.factor(begin + period * index))
         u = shape.apply(p)
         u[agents.FIRST_FOLLOWER] = law(p[agents.FIRST_FOLLOWER] - p[agents.LEADER], np.asarray(told))
-        p = p + period * (u + velocity)
+        p = p + period * (u + (velocity if own is None else own))
+    yield p
 
 
 def points(states: Iterator[Complex], steps: int) -> Real:

@@ -230,15 +230,10 @@ def _descend(place: Any, part: str, change: str) -> Any:
 
 
 def _explain(error: ValidationError, data: Mapping[str, Any]) -> str:
-    """One line for the first error: field, value and what was expected.
-
-    An unknown key goes before one that is missing beside it, which may be what it should be.
-    """
+    """One line for the first error, of its table an unknown key before all else: field, value, what was expected."""
     found = error.errors(include_url=False)
-    first = found[0]
-    if first["type"] == "missing":
-        beside = (each for each in found if each["loc"][:-1] == first["loc"][:-1] and each["type"] == "extra_forbidden")
-        first = next(beside, first)
+    unknown = (each for each in found if each["type"] == "extra_forbidden" and each["loc"][:-1] == found[0]["loc"][:-1])
+    first = next(unknown, found[0])
     location = first["loc"]
     field = _shortened(_field_name(location, data))
     if first["type"] == "extra_forbidden":

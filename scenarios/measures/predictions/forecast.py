@@ -14,7 +14,7 @@ from formation.analysis.closed_loop import arrival
 from formation.analysis.exact import ideal, points
 from formation.plane import Complex, as_complex
 from scenarios.definition.experiment import Experiment
-from scenarios.measures.predictions.theory import moves_exactly
+from scenarios.measures.predictions.theory import motion, moves_exactly
 from scenarios.measures.tracking import predicted_ends
 
 Real = NDArray[np.float64]
@@ -61,10 +61,14 @@ def forecast(experiment: Experiment, start: Real, told: Collection[int] | None =
         before, shaped = shaped, experiment.of_phase(index)
         if loop is None or shaped is not before:
             loop = Cascade.of(shaped.target, gains=shaped.own_gains)
-        arrived = None  # nobody ever does behind a reference that changes
-        if phase.reference is None and (told is None or index in told):
+        arrived = None  # nobody ever does behind a reference that changes; where v_r spreads, it is not asked for
+        constant = phase.reference is None and experiment.estimator is None
+        if constant and (told is None or index in told):
             arrived = arrival(_errors(loop, as_complex(here), phase, first, as_complex(end)), loop.reach, NEAR, STEP)
-        here = points(ideal(loop, as_complex(here), phase, first, phase.duration / steps), steps)[-1]
+        if experiment.estimator is None:
+            here = points(ideal(loop, as_complex(here), phase, first, phase.duration / steps), steps)[-1]
+        else:
+            here = motion(experiment, here, index, continuous=True)[-1]
         error_sum = float(np.abs(experiment.angles.errors(here, shaped.target_angles)).sum())
         forecasts.append(PhaseForecast(end, here, error_sum, arrived))
     return forecasts

@@ -19,7 +19,7 @@ from robots.safety.protocol import WALLS
 from robots.testbed import OBSTACLE_DISTANCE
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.clearance import standing_at, thing_name
-from scenarios.measures.predictions.theory import moves_exactly
+from scenarios.measures.predictions.theory import motion, moves_exactly
 from scenarios.measures.tracking import following
 
 Real = NDArray[np.float64]
@@ -54,7 +54,11 @@ def way(experiment: Experiment, start: Real) -> tuple[Real, Real] | None:
         if loop is None or shaped is not before:
             loop = Cascade.of(shaped.target, gains=shaped.own_gains)
         steps = max(1, round(phase.duration / step))
-        part = points(ideal(loop, as_complex(here), phase, first, phase.duration / steps), steps)[1:]
+        if experiment.estimator is None:
+            part = points(ideal(loop, as_complex(here), phase, first, phase.duration / steps), steps)[1:]
+        else:
+            every = motion(experiment, here, index, continuous=True)
+            part = every[np.round(np.linspace(0.0, len(every) - 1, steps + 1)).astype(int)[1:]]
         times.append(begin + phase.duration * np.arange(1, steps + 1) / steps)
         places.append(part)
         here, begin = part[-1], begin + phase.duration

@@ -12,7 +12,8 @@ from scenarios.definition.load import LIBRARY
 from scenarios.errors import InputError
 from scenarios.measures.predictions.course import course
 from scenarios.measures.predictions.forecast import forecast
-from scenarios.measures.predictions.theory import motion
+from scenarios.measures.predictions.theory import motion, moves_exactly
+from scenarios.measures.predictions.way import way
 from scenarios.measures.tracking import following, reference
 from scenarios.simulation.loop import simulate
 
@@ -247,6 +248,38 @@ def test_what_is_told_of_the_lag_behind_ramps_is_what_agents_do_that_begin_in_th
     begun = on_ramps(tmp_path, *changes, *in_place(experiment))
     assert residual(begun, 40.0) == pytest.approx(told.lag[0], abs=1e-7)
     assert told.lag[0] > 0.05
+
+
+@pytest.mark.parametrize("first_follower", ["stationary", "displacement"])
+def test_where_v_r_spreads_by_consensus_on_ramps_agents_move_exactly_as_predicted(
+    tmp_path: Path, first_follower: str
+) -> None:
+    spread = ("law.feedforward=false", "velocity_known_by=leader", "communication.gain_per_s=1.0")
+    experiment = on_ramps(tmp_path, first_follower, *spread)
+    trajectory = simulate(experiment, 0)
+    assert moves_exactly(experiment)
+    np.testing.assert_allclose(motion(experiment, trajectory.points[0], 0), trajectory.points, atol=1e-6)
+    ahead = forecast(experiment, trajectory.points[0])[0].points
+    assert ahead is not None
+    np.testing.assert_allclose(ahead, trajectory.points[-1], atol=1e-6)
+    t, points = way(experiment, trajectory.points[0]) or (np.zeros(0), np.zeros(0))
+    np.testing.assert_allclose(points[-1], trajectory.points[-1], atol=1e-6)
+    assert t[-1] == trajectory.t[-1]
+    assert not moves_exactly(on_ramps(tmp_path, first_follower, *spread, "communication.message_loss=0.1"))
+
+
+@pytest.mark.parametrize("plant", ["single_integrator", "unicycle"])
+def test_where_v_r_spreads_by_consensus_each_phase_is_the_predicted_one(plant: str) -> None:
+    changes = ("safety.filter=none",) if plant == "unicycle" else ()
+    experiment = open_experiment("consensus-velocity", (f"plant.name={plant}", *changes))
+    trajectory = simulate(experiment, 0)
+    for index in range(len(experiment.phases)):
+        rows = np.flatnonzero(trajectory.phase == index)
+        rows = rows if index == 0 else np.insert(rows, 0, rows[0] - 1)
+        exact = motion(experiment, trajectory.points[rows[0]], index)
+        if plant == "single_integrator":
+            np.testing.assert_allclose(exact, trajectory.points[rows], atol=1e-6)
+        np.testing.assert_allclose(exact[-1], trajectory.points[rows[-1]], atol=5e-3)  # robots turn first
 
 
 def test_commands_that_are_held_on_ramps_are_ramps_as_periods_shrink(tmp_path: Path) -> None:
