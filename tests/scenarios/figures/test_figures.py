@@ -131,6 +131,15 @@ def test_robots_are_shown_at_the_times_that_are_asked_for(shape: Ran) -> None:
     assert "start" not in texts(draw(shape.experiment, shape.trajectory, shape.metrics, "motion", (5.0,)))
 
 
+def test_a_time_stands_at_a_robot_that_is_elsewhere_at_the_other_times(shape: Ran) -> None:
+    """Agent 1 is the highest and never moves."""
+    figure = draw(shape.experiment, shape.trajectory, shape.metrics, "motion", (0.0, 60.0))
+    for text in figure.axes[0].texts:
+        if text.get_text().endswith(" s"):
+            state = shape.trajectory.points[0 if text.get_text() == "0 s" else -1]
+            assert np.linalg.norm(state - text.get_position(), axis=1).argmin() > 1
+
+
 @pytest.mark.parametrize("time", [-0.1, 60.5, np.nan])
 def test_a_time_that_the_run_does_not_have_is_refused(shape: Ran, time: float) -> None:
     with pytest.raises(InputError, match="at: expected seconds of the run, 0 to 60, got"):
