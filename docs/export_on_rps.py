@@ -14,18 +14,30 @@ import os
 import subprocess
 import sys
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 
 from scenarios.definition.experiment import Experiment, open_experiment
+from scenarios.definition.load import LIBRARY
+from scenarios.errors import InputError
 from scenarios.export.script import script
 from scenarios.studies.exported import arrival
 
 PEER = Path(__file__).resolve().with_name("peer.py")
-SCENARIOS = ("shape", "maneuver", "maneuver-caption", "maneuver-testbed", "scale-only", "orientation-only", "fastest")
 LIMIT = 22_000
 """Steps, its drive to the start included."""
+
+
+def exportable() -> list[str]:
+    """The scenarios of the library that a script can carry."""
+    names = []
+    for file in sorted(LIBRARY.glob("*.toml")):
+        with suppress(InputError):
+            script(open_experiment(file.stem))
+            names.append(file.stem)
+    return names
 
 
 def peers(experiment: Experiment, path: Path, seed: int, given: argparse.Namespace) -> tuple[bool, bool, bool, float]:
@@ -33,27 +45,30 @@ def peers(experiment: Experiment, path: Path, seed: int, given: argparse.Namespa
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "end.json"
         command = [given.python, str(PEER), str(path), str(out), str(seed), str(LIMIT), "driven"]
-        environment = os.environ | {"PYTHONPATH": str(given.original)}
+        environment = os.environ | {"PYTHONPATH": given.original}
         subprocess.run(command, cwd=folder, env=environment, capture_output=True, check=False)
         told = json.loads(out.read_text())
     run = told["runs"][-1]
     if run["initialising"]:
         return False, False, False, np.inf
     points = experiment.nid.project(np.array(run["end"]).T)
-    error = float(np.abs(experiment.angles.errors(points, experiment.target_angles)).sum())
+    error = float(np.abs(experiment.angles.errors(points, experiment.of_phase(-1).target_angles)).sum())
     return True, error < experiment.goal, run["accepted"], error
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("scenarios", nargs="*", default=SCENARIOS)
-    parser.add_argument("--original", type=Path, required=True)
-    parser.add_argument("--python", default=sys.executable)
+    parser.add_argument("scenarios", nargs="*", help="all that can be exported where none is named")
+    parser.add_argument("--original", type=os.path.abspath, required=True)
+    parser.add_argument("--python", type=os.path.abspath, default=sys.executable)
     parser.add_argument("--seeds", type=int, default=10)
     given = parser.parse_args()
-    alike, verdicts, runs = 0, 0, 0
-    for name in given.scenarios:
+    total = np.zeros(3, dtype=int)
+    print("| scenario | arrive on `rps` | arrive here | alike | verdicts alike | angle errors, median: `rps`, here |")
+    print("|---|---|---|---|---|---|")
+    for name in given.scenarios or exportable():
         experiment = open_experiment(name)
+        arrive, errors, alike, verdicts = np.zeros(2, dtype=int), [], 0, 0
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "exported.py"
             text = script(experiment, 0).replace("SHOW_FIGURE = True", "SHOW_FIGURE = False")
@@ -61,17 +76,20 @@ def main() -> None:
             for seed in range(given.seeds):
                 started, reached, accepted, error = peers(experiment, path, seed, given)
                 ours = arrival(experiment, path, "saturated", seed)
-                arrives = started and reached and accepted
-                runs += 1
-                alike += arrives == ours.arrives
+                there, here = started and reached and accepted, ours.started and ours.reached and ours.accepted
+                arrive += there, here
+                alike += there == here
                 verdicts += accepted == ours.accepted
-                print(
-                    f"{name}, seed {seed}: rps {'arrives' if arrives else 'misses'} ({error:.1e} rad), here "
-                    f"{'arrives' if ours.arrives else 'misses'} ({ours.error_sum:.1e} rad); verdicts "
-                    f"{'alike' if accepted == ours.accepted else 'differ'}",
-                    flush=True,
-                )
-    print(f"{alike} of {runs} alike on whether they arrive, {verdicts} of {runs} on the verdict")
+                errors.append((error, ours.error_sum))
+                if there != here or accepted != ours.accepted:
+                    told = f"rps {there} {accepted} {error:.1e}, here {here} {ours.accepted} {ours.error_sum:.1e}"
+                    print(f"{name}, seed {seed}, arrives, accepted, error: {told}", file=sys.stderr)
+        total += given.seeds, alike, verdicts
+        medians = ", ".join(f"{median:.1e}" for median in np.median(errors, axis=0))
+        row = (name, *(f"{count} of {given.seeds}" for count in (*arrive, alike, verdicts)), medians)
+        print(f"| `{row[0]}` | {' | '.join(row[1:])} |", flush=True)
+    runs, alike, verdicts = total
+    print(f"\n{alike} of {runs} alike on whether they arrive, {verdicts} of {runs} on the verdict")
 
 
 if __name__ == "__main__":

@@ -33,6 +33,9 @@ class BisectorLaw(Law):
     Args:
         formation: the target formation.
         wrapped: 1 to wrap the error to (-pi, pi], 0 to take the difference of two angles in [0, 2 pi) as it is.
+
+    Attributes:
+        corners: (s, 3) rows (k, a, b): an agent, and the two others between which it controls an angle.
     """
 
     name = "bisector"
@@ -53,6 +56,7 @@ class BisectorLaw(Law):
         turn = np.mod(np.angle(towards[corners[:, 1]] * np.conj(towards[corners[:, 0]])), TURN)
         corners[turn > np.pi] = corners[turn > np.pi][:, ::-1]
         self._first, self._second = corners.T
+        self.corners = np.column_stack([self._observer[corners[:, 0]], self._observed[corners]])
         self._wanted = np.minimum(turn, TURN - turn)
         self._wrapped = bool(wrapped)
         self._at = np.equal.outer(self._observer[self._first], np.arange(self._n)).astype(np.float64)

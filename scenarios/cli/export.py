@@ -41,9 +41,9 @@ def export(
 ) -> None:
     """Print a script that runs SCENARIO (a name or a file) on the Robotarium: numpy and rps, nothing else.
 
-    A safety filter becomes the Robotarium's certificate. What a script cannot carry is refused. With --check the script
-    is run, from the chargers on as on the testbed, on `saturated`, on `pymunk` and with measured robots, with several
-    seeds; exit code 1 where a run does not arrive.
+    A safety filter becomes the Robotarium's certificate. What a script cannot carry is refused. The script is tried
+    once, and a note says where it will miss. With --check it is run, from the chargers on as on the testbed, on
+    `saturated`, on `pymunk` and with measured robots, with several seeds; exit code 1 where a run does not arrive.
     """
     from scenarios.definition.experiment import open_experiment
     from scenarios.definition.load import changed
@@ -58,6 +58,8 @@ def export(
     notes = remarks(experiment, seed)
     if (remark := crowded(experiment, start_poses(experiment, seed))) is not None:
         notes.append(remark)
+    if not checked:
+        notes.extend(_misses(experiment, text))
     for remark in notes:
         click.echo(f"note: {remark}", err=True)
     if out is not None:
@@ -70,6 +72,16 @@ def export(
         raise InputError("--runs: needs --check")
     elif out is None:
         click.echo(text, nl=False)
+
+
+def _misses(experiment: Experiment, text: str) -> list[str]:
+    """What a rehearsal of the script tells, where it does not arrive."""
+    from scenarios.studies import exported
+
+    found = exported.rehearse(experiment, text)
+    if found.arrives:
+        return []
+    return [f"it will miss: on {found.plant}, from its very start, {exported.why(found, experiment)}"]
 
 
 def _check(experiment: Experiment, seed: int, runs: int) -> None:

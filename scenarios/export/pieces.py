@@ -13,46 +13,12 @@ FIRST_FOLLOWER = {
     ),
 }
 
-BY_ROW = """\
-FOLLOWER, MEASURED = np.array([edge[:2] for edge in EDGES]).T - 1
-GAIN = np.array([edge[2] for edge in EDGES])
-VERTEX, FROM, TO = np.array([angle[:3] for angle in ANGLES]).T - 1
-"""
-
-BY_NUMBER = """\
-ROW = {agent: row for row, agent in enumerate(AGENTS)}
-FOLLOWER, MEASURED = np.array([[ROW[k] for k in edge[:2]] for edge in EDGES]).T
-GAIN = np.array([edge[2] for edge in EDGES])
-VERTEX, FROM, TO = np.array([[ROW[k] for k in angle[:3]] for angle in ANGLES]).T
-"""
-
 SCALING = """\
     # Slow both wheels by one factor: the testbed would clip each by itself,
     # and so bend the path.
     wheel_speed = abs(v) + BASE_LENGTH / 2 * abs(omega)
     scale = WHEEL_SPEED / np.maximum(wheel_speed, WHEEL_SPEED)
     v, omega = scale * v, scale * omega
-"""
-
-CERTIFICATE_IMPORT = """\
-from rps.utilities.barrier_certificates import (
-    create_si_barrier_certificate_with_boundary,
-)
-"""
-
-CERTIFICATE = """\
-    # {why}.
-    certificate = create_si_barrier_certificate_with_boundary(
-        safety_radius={radius},  # m, between two steered points
-        barrier_gain={gain},
-        boundary_points=np.array({boundary}),
-    )
-"""
-
-FILTERING = """\
-            wish, points = (np.array([z.real, z.imag]) for z in (u, p))
-            vx, vy = certificate(wish, points)
-            u = vx + 1j * vy
 """
 
 ESTIMATE = """
@@ -96,6 +62,51 @@ WAITING = """\
             u += {common}
 """
 
+CHANGING_GAINS = """\
+GAINS = np.zeros((len(SHAPES), N, N), dtype=complex)
+for shape, edges in enumerate(SHAPES):
+    for follower, measured, gain in edges:
+        GAINS[shape, {follower}, {measured}] += gain
+        GAINS[shape, {follower}, {follower}] -= gain
+"""
+
+FEEDFORWARD = """\
+# Agent, the two between which it measures, and the share of their distance
+# that it adds, times the rate of the formation.
+SHARES = [
+{rows}
+]
+"""
+
+FED = """\
+    u[FED] += rate * SHARE * (p[FED_TO] - p[FED_FROM])
+"""
+
+STOPS = """
+# Agents that stand still, from and until (s).
+STOPS = [
+{rows}
+]
+"""
+
+STOPPED = '''
+
+def stopped(t):
+    """The rows of agents that stand still in the period that begins at t."""
+    now = t + PERIOD / 2
+    return [{row} for agent, begin, end in STOPS if begin <= now < end]
+'''
+
+COMMAND = """\
+            robots.set_velocities(np.arange(N), unicycle(u, heading))
+"""
+
+COMMAND_UNLESS_STOPPED = """\
+            command = unicycle(u, heading)
+            command[:, stopped(t)] = 0
+            robots.set_velocities(np.arange(N), command)
+"""
+
 SCRIPT = '''\
 """{introduction}
 """
@@ -113,17 +124,13 @@ START = [
 {start}
 ]
 
-# Follower, agent that it measures, and the law's gain (1/s), eq. (u).
-EDGES = [
-{edges}
-]
-
-# Phase, its length (s), the velocity of all{told}.
+{tables}
+# Phase{columns}.
 PHASES = [
 {phases}
 ]
-
-# Angle at an agent, counter-clockwise from one agent to another; target (rad).
+{reference}{stops}
+{angles_told}
 ANGLES = [
 {angles}
 ]
@@ -131,14 +138,13 @@ GOAL = {goal}  # rad, for the sum of all angle errors
 
 AHEAD = {ahead}  # m, from the axle's centre to the point that the law steers
 {constants}
-{indices}TARGET = np.array([angle[3] for angle in ANGLES])
-{estimate}{slow}
+{indices}{vertices}TARGET = {target}
+{estimate}{slow}{obstacles}{functions}
 
-def law(p{argument}):
+def law(p{arguments}):
     """Velocities of the points p, but for the velocity of all."""
     u = np.zeros(N, dtype=complex)
-    np.add.at(u, FOLLOWER, GAIN * (p[MEASURED] - p[FOLLOWER]))
-{first_follower}    return u
+{body}    return u
 {may_move}
 
 def unicycle(u, heading):
@@ -155,11 +161,11 @@ def observe(robots):
     return x + 1j * y + AHEAD * heading, heading
 
 
-def angle_errors(p):
+def angle_errors(p{shape_argument}):
     """How far each angle is from its target, rad."""
     turn = (p[TO] - p[VERTEX]) / (p[FROM] - p[VERTEX])
-    return np.angle(turn * np.exp(-1j * TARGET))
-
+    return np.angle(turn * np.exp(-1j * TARGET{of_shape}))
+{more_functions}
 
 def main():
     robots = Robotarium(
@@ -168,20 +174,19 @@ def main():
         sim_in_real_time=SHOW_FIGURE,
         initial_conditions=np.array(START).T,
     )
-{certificate}{known}{settled}    p, heading = observe(robots)
-    for name, duration, velocity{argument} in PHASES:
+{certificate}{known}{settled}{clock}    p, heading = observe(robots)
+    for {items} in PHASES:
         for _ in range(round(duration / PERIOD)):
-{believing}            u = law(p{argument}){added}
-{waiting}{filtering}            robots.set_velocities(np.arange(N), unicycle(u, heading))
-            robots.step()
-            p, heading = observe(robots)
-        total = abs(angle_errors(p)).sum()
+{telling}{believing}            u = law(p{arguments}){added}
+{waiting}{filtering}{command}            robots.step()
+{ticking}            p, heading = observe(robots)
+        total = abs(angle_errors(p{shape_argument})).sum()
         print(f"{{name}}: the angle errors add up to {{total:.2e}} rad")
 
     print("angle at (from, to)    target    reached        error")
-    for angle, error in zip(ANGLES, angle_errors(p), strict=True):
-        at, start, end, target = angle
-        degrees = np.degrees([target, (target + error) % (2 * np.pi)])
+    for angle, error in zip(ANGLES, angle_errors(p{shape_argument}), strict=True):
+        at, start, end, {target_item} = angle
+{last_target}        degrees = np.degrees([target, (target + error) % (2 * np.pi)])
         print(
             f"{{at:5d}} ({{start:4d}}, {{end:4d}})"
             f" {{degrees[0]:9.2f}}  {{degrees[1]:9.2f}} deg  {{error:+.1e}} rad"

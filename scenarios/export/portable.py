@@ -9,6 +9,7 @@ from robots import GTERNAL, ROBOTARIUM_FLOOR
 from robots.model import CONTROL_PERIOD
 from robots.robotarium import MOST_ROBOTS
 from robots.testbed import separation
+from scenarios.definition.events.event import RESHAPE, STOP
 from scenarios.definition.experiment import Experiment
 from scenarios.definition.schema import Scenario
 from scenarios.errors import InputError
@@ -32,15 +33,11 @@ def start_poses(experiment: Experiment, seed: int) -> Real:
     for field, value, expected in _required(scenario):
         if value != expected:
             raise InputError(f"{path}: {field}: a script for the testbed needs {expected!r}, got {value!r}")
-    if scenario.reference is not None:
-        raise InputError(f"{path}: reference: a script for the testbed needs phases")
     for agent in scenario.agents:
         if agent.robot is not None:
             raise InputError(f"{path}: agents[id {agent.id}].robot: the testbed's robots are all equal, expected none")
-    if scenario.events:
-        raise InputError(f"{path}: events: a script for the testbed cannot bring them about, expected none")
-    if scenario.obstacles:
-        raise InputError(f"{path}: obstacles: the testbed has none, got {len(scenario.obstacles)}")
+    _check_events(experiment)
+    _check_displacements(experiment)
     for axis, side, floor in (
         ("x_m", scenario.arena.x_m, ROBOTARIUM_FLOOR.x),
         ("y_m", scenario.arena.y_m, ROBOTARIUM_FLOOR.y),
@@ -58,6 +55,37 @@ def start_poses(experiment: Experiment, seed: int) -> Real:
             f"({x:.3f}, {y:.3f}) m, expected a place on the testbed's floor"
         )
     return poses
+
+
+def _check_events(experiment: Experiment) -> None:
+    """Robots that stop and shapes that change; all else is the world's doing, or a sensor's."""
+    path, scenario = experiment.file.path, experiment.scenario
+    for event in experiment.events:
+        if event.kind not in (STOP, RESHAPE):
+            raise InputError(
+                f"{path}: events[{event.number}].kind: a script for the testbed can bring about "
+                f'"{STOP}" and "{RESHAPE}", got "{event.kind}"'
+            )
+    if experiment.shapes and (scenario.law.activation == "sequential" or scenario.law.feedforward):
+        key = "feedforward" if scenario.law.feedforward else "activation"
+        raise InputError(f"{path}: law.{key}: not in a script for the testbed whose shape changes")
+    if experiment.shapes and scenario.law.name != "angle":
+        raise InputError(f'{path}: law.name: a script for the testbed changes shapes of "angle" alone')
+
+
+def _check_displacements(experiment: Experiment) -> None:
+    """Other laws than the paper's have the target's own scale and turn in a script."""
+    if experiment.scenario.law.name == "angle":
+        return
+    own = tuple((experiment.formation.positions[1] - experiment.formation.positions[0]).tolist())
+    for number, phase in enumerate(experiment.phases, start=1):
+        if phase.reference is not None:
+            raise InputError(f'{experiment.file.path}: reference: a script for the testbed has it for "angle" alone')
+        if phase.delta not in (None, own):
+            raise InputError(
+                f"{experiment.file.path}: phases[{number}].displacement_m: a script for the testbed steers it "
+                f'with law.name = "angle" alone, expected {list(own)}'
+            )
 
 
 def crowded(experiment: Experiment, poses: Real) -> str | None:

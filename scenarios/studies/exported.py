@@ -14,18 +14,21 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.console import Console
 
 from robots.measured import MEASURED
 from robots.model import CONTROL_PERIOD
 from robots.rps.session import Session
-from robots.testbed import judge
+from robots.testbed import OBSTACLE_DISTANCE, collision_centres, judge
 from scenarios.definition.experiment import Experiment
 from scenarios.export.script import script
 from scenarios.measures.window import trailing
 from scenarios.simulation.script.execute import execute
 from scenarios.simulation.script.script_file import read
 from scenarios.terminal import new_table, print_table
+
+Real = NDArray[np.float64]
 
 PLANTS = ("saturated", "pymunk")
 MEASURED_ROBOTS = "measured"
@@ -43,6 +46,7 @@ class Arrival:
             come to rest, the sum of the mean errors over the last seconds, as in a run.
         reached: whether that is below the scenario's goal.
         accepted: the testbed's verdict on the script's own part.
+        clear: whether robots kept off the scenario's obstacles, of which the testbed has none.
         kinds: of the violations.
         seconds: that the script's part took.
     """
@@ -55,11 +59,12 @@ class Arrival:
     accepted: bool
     kinds: tuple[str, ...]
     seconds: float
+    clear: bool = True
 
     @property
     def arrives(self) -> bool:
-        """Whether the testbed would run it to its goal."""
-        return self.started and self.reached and self.accepted
+        """Whether the testbed would run it to its goal, past the obstacles that the scenario imagines there."""
+        return self.started and self.reached and self.accepted and self.clear
 
 
 def check(
@@ -86,24 +91,42 @@ def check(
     return found
 
 
+def rehearse(experiment: Experiment, text: str) -> Arrival:
+    """One run of an exported script on ``saturated``, robots standing at their start at once: the kindest of all."""
+    with tempfile.TemporaryDirectory(prefix="formation-export-") as folder:
+        path = Path(folder) / "rehearsal.py"
+        path.write_text(text.replace("SHOW_FIGURE = True", "SHOW_FIGURE = False"), encoding="utf-8")
+        return _run(experiment, path, "saturated", 0, Session("saturated", "exact"))
+
+
 def arrival(experiment: Experiment, path: Path, plant: str, seed: int) -> Arrival:
     """One run of an exported script."""
     session = Session(plant, "driven")
     if plant == MEASURED_ROBOTS:
         model = experiment.measured or MEASURED
         session = Session("pymunk", "driven", np.random.default_rng(seed), measured=model)
+    return _run(experiment, path, plant, seed, session)
+
+
+def _run(experiment: Experiment, path: Path, plant: str, seed: int, session: Session) -> Arrival:
     with contextlib.redirect_stdout(io.StringIO()):
         ending = execute(read(path, 2), (), session, seed)
     if not ending.robots:
         return Arrival(plant, seed, False, float("inf"), False, False, (), 0.0)
     record = ending.robots[-1].record()
-    errors = experiment.angles.errors(experiment.nid.project(record.poses), experiment.target_angles)
+    errors = experiment.angles.errors(experiment.nid.project(record.poses), experiment.of_phase(-1).target_angles)
     last = trailing(record.t, errors).mean[-1] if plant == MEASURED_ROBOTS else errors[-1]
     error = float(np.abs(last).sum())
     verdict = judge(record.t, record.poses, record.wheel_speeds)
     kinds = tuple(violation.kind for violation in verdict.violations)
     seconds = CONTROL_PERIOD * (len(record.t) - 1)
-    return Arrival(plant, seed, True, error, error < experiment.goal, verdict.accepted, kinds, seconds)
+    reached, clear = error < experiment.goal, _clear(experiment, record.poses)
+    return Arrival(plant, seed, True, error, reached, verdict.accepted, kinds, seconds, clear)
+
+
+def _clear(experiment: Experiment, poses: Real) -> bool:
+    obstacles, centres = experiment.arena.obstacles, collision_centres(poses)
+    return all((obstacle.distance(centres) > OBSTACLE_DISTANCE).all() for obstacle in obstacles)
 
 
 def print_check(console: Console, experiment: Experiment, found: Sequence[Arrival]) -> None:
@@ -135,4 +158,5 @@ def why(each: Arrival, experiment: Experiment) -> str:
         return "the robots do not come to their start; it is too crowded there"
     reasons = [] if each.reached else [f"the angle errors add up to {each.error_sum:.1e} rad, goal {experiment.goal:g}"]
     hard = [kind for kind in each.kinds if kind != "actuator"]
-    return "; ".join([*reasons, *(["rejected: " + ", ".join(hard)] if hard else [])])
+    touched = [] if each.clear else ["robots come too close to an obstacle"]
+    return "; ".join([*reasons, *(["rejected: " + ", ".join(hard)] if hard else []), *touched])

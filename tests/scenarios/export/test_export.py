@@ -3,80 +3,48 @@
 import ast
 import subprocess
 import sys
-import types
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robots.robotarium import Robotarium, create_si_barrier_certificate_with_boundary
+from robots.robotarium import Robotarium
 from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.errors import InputError
 from scenarios.export.portable import crowded, start_poses
-from scenarios.export.script import prose, quoted, script
+from scenarios.export.script import script
+from scenarios.export.wording import prose, quoted
 from scenarios.simulation.loop import simulate
 
 WHOLE_PERIODS = 900 * 0.033
+Runner = Callable[[str, str], Robotarium]
+Same = Callable[[Experiment, int, str, float], None]
 EXPORTABLE = (
     "shape",
-    "fastest",
-    "maneuver-testbed",
     "scale-only",
     "orientation-only",
     "sequential",
     "consensus-velocity",
+    "gap",
+    "figure-eight",
+    "reshape",
+    "robot-stops",
+    "law-area",
+    "law-triangle-mixed",
+    "law-bisector",
+    "law-persistent",
+    "law-laplacian",
 )
-
-Runner = Callable[[str, str], Robotarium]
-
-
-@pytest.fixture
-def on_testbed(monkeypatch: pytest.MonkeyPatch) -> Runner:
-    """Runs a script with our Robotarium in the place of the public one."""
-
-    def run(text: str, plant: str) -> Robotarium:
-        made = []
-
-        def robotarium(**arguments: Any) -> Robotarium:
-            made.append(Robotarium(plant=plant, **arguments))
-            return made[-1]
-
-        simulator, certificates = types.ModuleType("simulator"), types.ModuleType("certificates")
-        vars(simulator)["Robotarium"] = robotarium
-        vars(certificates)["create_si_barrier_certificate_with_boundary"] = create_si_barrier_certificate_with_boundary
-        for name in ("rps", "rps.utilities"):
-            monkeypatch.setitem(sys.modules, name, types.ModuleType(name))
-        monkeypatch.setitem(sys.modules, "rps.robotarium", simulator)
-        monkeypatch.setitem(sys.modules, "rps.utilities.barrier_certificates", certificates)
-        exec(compile(text, "script", "exec"), {"__name__": "__main__"})
-        (only,) = made
-        return only
-
-    return run
-
-
-def assert_same_motion(robotarium: Robotarium, experiment: Experiment, seed: int, atol: float) -> None:
-    """Same poses at every step. Rounding alone differs: the script computes in the common frame, not in each robot's,
-    and from wrapped headings, and leaves a billionth of the wheels' speed unused."""
-    t, poses, _ = robotarium.recorded()
-    run = simulate(experiment, seed)
-    assert len(t) == len(run.t)
-    np.testing.assert_allclose(t, run.t, atol=1e-9)
-    np.testing.assert_allclose(poses, run.poses, atol=atol)
-    final, expected = (experiment.nid.project(p) for p in (poses[-1], run.poses[-1]))
-    errors = [experiment.angles.errors(points, experiment.target_angles) for points in (final, expected)]
-    np.testing.assert_allclose(*errors, atol=1e-7)
 
 
 @pytest.mark.parametrize(("plant", "atol"), [("saturated", 1e-7), ("pymunk", 1e-4)])
 @pytest.mark.parametrize("saturation", ["scale", "clip"])
 def test_the_script_moves_the_robots_as_the_run_does(
-    on_testbed: Runner, varied: Callable[..., Experiment], plant: str, atol: float, saturation: str
+    moves_as_the_run: Same, varied: Callable[..., Experiment], plant: str, atol: float, saturation: str
 ) -> None:
     experiment = varied(
         f'plant.name="{plant}"',
@@ -85,12 +53,12 @@ def test_the_script_moves_the_robots_as_the_run_does(
         "robot.projection_distance_m=0.04",
         duration=WHOLE_PERIODS,
     )
-    assert_same_motion(on_testbed(script(experiment, 3), plant), experiment, 3, atol)
+    moves_as_the_run(experiment, 3, plant, atol)
 
 
 @pytest.mark.parametrize("first_follower", ["stationary", "displacement", "distance", "bearing"])
 def test_every_first_follower_acts_in_the_script_as_in_the_run(
-    on_testbed: Runner, varied: Callable[..., Experiment], first_follower: str
+    moves_as_the_run: Same, varied: Callable[..., Experiment], first_follower: str
 ) -> None:
     phases = [
         {"name": "up", "duration_s": 3.3, "velocity_m_s": [0.0, 0.02], "displacement_m": [0.4, 0.4]},
@@ -103,20 +71,20 @@ def test_every_first_follower_acts_in_the_script_as_in_the_run(
         plant={"name": "saturated"},
         safety={"filter": "none"},
     )
-    assert_same_motion(on_testbed(script(experiment, 1), "saturated"), experiment, 1, 1e-7)
+    moves_as_the_run(experiment, 1, "saturated", 1e-7)
 
 
-def test_followers_wait_for_their_neighbours_in_the_script_as_in_the_run(on_testbed: Runner) -> None:
+def test_followers_wait_for_their_neighbours_in_the_script_as_in_the_run(moves_as_the_run: Same) -> None:
     changes = ('plant.name="saturated"', 'safety.filter="none"')
     experiment = open_experiment("sequential", changes, duration=450 * 0.033)
     started = simulate(experiment, 0).active
     assert not started[0, 3]
     assert started[-1, 4]
-    assert_same_motion(on_testbed(script(experiment, 0), "saturated"), experiment, 0, 1e-7)
+    moves_as_the_run(experiment, 0, "saturated", 1e-7)
 
 
 def test_agents_learn_the_velocity_in_the_script_as_in_the_run(
-    on_testbed: Runner, varied: Callable[..., Experiment]
+    moves_as_the_run: Same, varied: Callable[..., Experiment]
 ) -> None:
     experiment = varied(
         without="duration_s",
@@ -130,14 +98,14 @@ def test_agents_learn_the_velocity_in_the_script_as_in_the_run(
         plant={"name": "saturated"},
         safety={"filter": "none"},
     )
-    assert_same_motion(on_testbed(script(experiment, 1), "saturated"), experiment, 1, 1e-7)
+    moves_as_the_run(experiment, 1, "saturated", 1e-7)
 
 
 def test_the_certificate_acts_in_the_script_as_in_the_run(
-    on_testbed: Runner, varied: Callable[..., Experiment]
+    moves_as_the_run: Same, varied: Callable[..., Experiment]
 ) -> None:
     experiment = varied('plant.name="saturated"', 'safety.filter="robotarium"', duration=300 * 0.033)
-    assert_same_motion(on_testbed(script(experiment, 0), "saturated"), experiment, 0, 1e-6)
+    moves_as_the_run(experiment, 0, "saturated", 1e-6)
 
 
 @pytest.mark.slow
@@ -215,7 +183,6 @@ def test_quoted_names_read_back(name: str) -> None:
 @pytest.mark.parametrize(
     ("change", "field"),
     [
-        ('law.name="displacement"', "law.name"),
         ("plant.control_period_s=0.02", "plant.control_period_s"),
         ("robot.wheel_speed_limit_rad_s=20.0", "robot.wheel_speed_limit_rad_s"),
         ("sensor.position_noise_m=0.01", "sensor.position_noise_m"),
@@ -235,9 +202,7 @@ def test_what_a_script_cannot_carry_is_refused_by_name(
         script(varied(change))
 
 
-def test_obstacles_and_starts_off_the_floor_are_refused(varied: Callable[..., Experiment]) -> None:
-    with pytest.raises(InputError, match="obstacles: the testbed has none"):
-        script(open_experiment("obstacles"))
+def test_starts_off_the_floor_are_refused() -> None:
     with pytest.raises(InputError, match=r"agents\[id 2\].start"):
         script(open_experiment("shape", ("agents.2.start=[-1.7, 0.0]",)))
 
@@ -265,7 +230,7 @@ def test_export_prints_or_writes_and_replaces_nothing_unasked(
     assert place.read_text(encoding="utf-8") == "mine"
     assert export("shape", "--seed", "2", "--out", str(place), "--force") == (0, "", remark)
     assert place.read_text(encoding="utf-8") == printed
-    code, _, problem = export("obstacles", "--out", str(tmp_path / "obstacles.py"))
+    code, _, problem = export("random-50", "--out", str(tmp_path / "random.py"))
     assert code == 2
     assert problem.count("\n") == 1
     assert sorted(path.name for path in tmp_path.rglob("*.py")) == ["shape.py"]
@@ -289,7 +254,7 @@ safety = { filter = "none" }
 """
 
 
-def test_agents_keep_their_own_numbers_in_the_script(on_testbed: Runner, tmp_path: Path) -> None:
+def test_agents_keep_their_own_numbers_in_the_script(moves_as_the_run: Same, tmp_path: Path) -> None:
     (tmp_path / "numbered.toml").write_text(NUMBERED, encoding="utf-8")
     experiment = open_experiment(str(tmp_path / "numbered.toml"))
     assert experiment.numbers[:2] == (7, 3)
@@ -303,4 +268,4 @@ def test_agents_keep_their_own_numbers_in_the_script(on_testbed: Runner, tmp_pat
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "EDGES"
     )
     assert {edge[:2] for edge in edges} == {(9, 3), (9, 7), (5, 3), (5, 9), (1, 9), (1, 7)}
-    assert_same_motion(on_testbed(text, "saturated"), experiment, 2, 1e-7)
+    moves_as_the_run(experiment, 2, "saturated", 1e-7)
