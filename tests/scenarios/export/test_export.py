@@ -216,11 +216,11 @@ def test_starts_without_room_to_arrive_are_remarked_on() -> None:
 def test_export_prints_or_writes_and_replaces_nothing_unasked(
     tmp_path: Path, cli: Callable[..., tuple[int, str, str]]
 ) -> None:
-    export = partial(cli, "export")
+    export = partial(cli, "export", "--duration", "1")
     place = tmp_path / "new" / "shape.py"
     code, printed, remark = export("shape", "--seed", "2")
     assert code == 0
-    assert printed == script(open_experiment("shape"), 2)
+    assert printed == script(open_experiment("shape", (), 1.0), 2)
     assert export("shape", "--seed", "2", "--out", str(place)) == (0, "", remark)
     assert place.read_text(encoding="utf-8") == printed
     place.write_text("mine", encoding="utf-8")
