@@ -5,7 +5,7 @@
 Needs what ``rps`` needs, nothing of this project. STARTS is ``exact`` for robots that stand at their initial
 conditions at once, ``driven`` for its own drive there. Figures are made and never shown; a step waits for nothing, and
 on the script's clock it takes 0.033 s. With RPS_EXACT=1 its solver goes on to 1e-9 instead
-of 1e-2, and robots move on arcs instead of by Euler.
+of 1e-2, and robots move on arcs instead of by Euler. With RPS_NUDGE=METRES the first robot starts so much further in x.
 """
 
 import json
@@ -44,7 +44,9 @@ def main() -> None:
                 named["skip_initialization"] = True
             made.append(self)
             super().__init__(*given, **named)
-            self.start = np.array(self._poses if second else self.poses)
+            poses = self._poses if second else self.poses
+            poses[0, 0] += float(os.environ.get("RPS_NUDGE", "0"))
+            self.start = np.array(poses)
 
         def step(self):
             before = np.array(self._poses if second else self.poses)

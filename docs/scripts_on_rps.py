@@ -5,7 +5,8 @@
 RPS is the public simulator's source, of either generation, PYTHON an interpreter that has what it needs
 (numpy, matplotlib, scipy, cvxopt, quadprog). Nothing is fetched. Both sides begin at the initial conditions, with one
 seed. The public simulator runs twice: as it is, and with its solver run on to 1e-9 and robots moved on arcs, which
-tells what its numerics do. What has run is kept in FOLDER and not run again.
+tells what its numerics do. With --nudge 1e-9 it runs once more in that way, its first robot a billionth of a metre
+aside, which tells how far apart its own runs end. What has run is kept in FOLDER and not run again.
 """
 
 from __future__ import annotations
@@ -52,10 +53,11 @@ def scripts(folder: Path) -> list[Path]:
     ]
 
 
-def on_rps(script: Path, out: Path, given: argparse.Namespace, exact: bool) -> End | None:
+def on_rps(script: Path, out: Path, given: argparse.Namespace, exact: bool, nudge: float = 0.0) -> End | None:
     """The end on the public simulator."""
     if not out.exists():
         environment = os.environ | {"PYTHONPATH": str(given.original), "RPS_EXACT": "1" if exact else "0"}
+        environment["RPS_NUDGE"] = str(nudge)
         command = [given.python, str(PEER), str(script), str(out), str(given.seed), str(given.limit), "exact"]
         _run(command, script, environment, out.with_suffix(".log"))
     if not out.exists():
@@ -66,6 +68,11 @@ def on_rps(script: Path, out: Path, given: argparse.Namespace, exact: bool) -> E
         return End(told["outcome"], 0, np.empty((3, 0)), False)
     longest = max(reversed(runs), key=lambda run: run["steps"])
     return End(told["outcome"], longest["steps"], np.array(longest["end"]), longest["accepted"])
+
+
+def nudged(script: Path, keep: Path, given: argparse.Namespace) -> End | None:
+    """The end on the public simulator without its numerics, from a start that is so little another one."""
+    return on_rps(script, keep / f"rps-exact-{given.nudge:g}.json", given, exact=True, nudge=given.nudge)
 
 
 def here(script: Path, out: Path, given: argparse.Namespace, plant: str) -> End | None:
@@ -103,14 +110,18 @@ def main() -> None:
     parser.add_argument("--keep", type=Path, default=Path("runs/scripts-on-rps"))
     parser.add_argument("--limit", type=int, default=12_000, help="steps, after which a script is stopped")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--nudge", type=float, default=0.0, help="metres")
+    parser.add_argument("--only", nargs="*", default=(), help="names of scripts")
     parser.add_argument("--markdown", type=Path)
     given = parser.parse_args()
     given.folder, given.original, given.keep = (p.resolve() for p in (given.folder, given.original, given.keep))
+    given.python = os.path.abspath(given.python)
     head = (
         "script",
         "rps",
         "as it is (mm)",
         "exact (mm)",
+        *(["exact, nudged (mm)"] if given.nudge else []),
         "saturated",
         "pymunk",
         "rps",
@@ -121,6 +132,8 @@ def main() -> None:
     lines = [f"| {' | '.join(head)} |", f"|{'---|' * len(head)}"]
     print(lines[0], lines[1], sep="\n", flush=True)
     for script in scripts(given.folder):
+        if given.only and script.stem not in given.only:
+            continue
         keep = given.keep / script.relative_to(given.folder).with_suffix("")
         keep.mkdir(parents=True, exist_ok=True)
         as_it_is = on_rps(script, keep / "rps.json", given, exact=False)
@@ -131,6 +144,7 @@ def main() -> None:
             "-" if as_it_is is None else as_it_is.text(),
             apart(as_it_is, ours[0]),
             apart(exact, ours[0]),
+            *([apart(exact, nudged(script, keep, given))] if given.nudge else []),
             *("-" if end is None else end.text() for end in ours),
             *(verdict(end) for end in (as_it_is, *ours)),
             "yes" if any(end is not None and end.figure for end in ours) else "",

@@ -103,8 +103,10 @@ def names(rest: str, version: Version) -> dict[str, object]:
 
     numpy and pyplot are among them where scripts get them from here by ``import *``.
     """
-    found: dict[str, object] = names(ALSO[rest], version) if rest in ALSO else {"np": np}
+    found: dict[str, object] = {"np": np}
     for generation in sorted(MODULES[rest], key=lambda each: each == version):
+        if rest in ALSO:
+            found |= made(ALSO[rest], generation)
         found |= made(rest, generation)
     if rest == "utilities.misc" and version == 1:
         found["plt"] = importlib.import_module("matplotlib.pyplot")

@@ -11,8 +11,8 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-ORIGINALS = {1: "RPS1", 2: "RPS2"}
-"""Environment variables that name folders with the public simulator of each generation, unchanged."""
+ORIGINALS = {1: "RPS1", 2: "RPS2", 2018: "RPS2018"}
+"""Environment variables that name folders with the public simulator of a generation, or a year, unchanged."""
 
 
 @pytest.fixture

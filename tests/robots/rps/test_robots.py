@@ -227,6 +227,15 @@ def test_the_hook_serves_all_modules_and_puts_back_what_was_there(version: Any) 
         del sys.modules["rps"]
 
 
+@pytest.mark.parametrize("version", [1, 2])
+def test_names_that_come_along_are_of_the_generation_that_is_served(version: Any) -> None:
+    """In version 1 the mapping cuts the turn; that of 2, which ``controllers`` uses, does not."""
+    mapping = hook.names("utilities.transformations", version)
+    for module in hook.ALSO:
+        along = hook.names(module, version)
+        assert {name: along[name] for name in mapping} == mapping
+
+
 def test_a_session_says_how_robots_are_simulated_and_watches_them() -> None:
     seen: list[int] = []
     session = Session(plant="saturated", begun=lambda r: seen.append(-1), stepped=lambda r: seen.append(r.steps))
