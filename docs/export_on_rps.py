@@ -3,7 +3,7 @@
     .venv/bin/python docs/export_on_rps.py --original RPS --python PYTHON --seeds 10 [SCENARIO ...]
 
 RPS is the source of ``rps`` 2.1, PYTHON an interpreter that has what it needs. Both begin at the chargers, with one
-seed of the generators on both sides.
+seed of the generators on both sides. Verdicts are compared where robots come to their start on both.
 """
 
 from __future__ import annotations
@@ -63,12 +63,12 @@ def main() -> None:
     parser.add_argument("--python", type=os.path.abspath, default=sys.executable)
     parser.add_argument("--seeds", type=int, default=10)
     given = parser.parse_args()
-    total = np.zeros(3, dtype=int)
+    total = np.zeros(4, dtype=int)
     print("| scenario | arrive on `rps` | arrive here | alike | verdicts alike | angle errors, median: `rps`, here |")
     print("|---|---|---|---|---|---|")
     for name in given.scenarios or exportable():
         experiment = open_experiment(name)
-        arrive, errors, alike, verdicts = np.zeros(2, dtype=int), [], 0, 0
+        arrive, errors, alike, judged, verdicts = np.zeros(2, dtype=int), [], 0, 0, 0
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "exported.py"
             text = script(experiment, 0).replace("SHOW_FIGURE = True", "SHOW_FIGURE = False")
@@ -79,17 +79,20 @@ def main() -> None:
                 there, here = started and reached and accepted, ours.started and ours.reached and ours.accepted
                 arrive += there, here
                 alike += there == here
-                verdicts += accepted == ours.accepted
+                both = started and ours.started
+                judged += both
+                verdicts += both and accepted == ours.accepted
                 errors.append((error, ours.error_sum))
-                if there != here or accepted != ours.accepted:
+                if there != here or started != ours.started or accepted != ours.accepted:
                     told = f"rps {there} {accepted} {error:.1e}, here {here} {ours.accepted} {ours.error_sum:.1e}"
                     print(f"{name}, seed {seed}, arrives, accepted, error: {told}", file=sys.stderr)
-        total += given.seeds, alike, verdicts
+        total += given.seeds, alike, judged, verdicts
         medians = ", ".join(f"{median:.1e}" for median in np.median(errors, axis=0))
-        row = (name, *(f"{count} of {given.seeds}" for count in (*arrive, alike, verdicts)), medians)
+        counts = [f"{count} of {given.seeds}" for count in (*arrive, alike)]
+        row = (name, *counts, f"{verdicts} of {judged}", medians)
         print(f"| `{row[0]}` | {' | '.join(row[1:])} |", flush=True)
-    runs, alike, verdicts = total
-    print(f"\n{alike} of {runs} alike on whether they arrive, {verdicts} of {runs} on the verdict")
+    runs, alike, judged, verdicts = total
+    print(f"\n{alike} of {runs} alike on whether they arrive, {verdicts} of {judged} on the verdict")
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import random
 import runpy
+import signal
 import sys
 import threading
 import traceback
@@ -90,7 +91,7 @@ def execute(
     watched = replace(session, begun=begun, stepped=stepped)
     with _as_python_would(file.path, arguments, seed), serving(file.version, file.path), during(watched):
         try:
-            with clock.in_force(), _leaving_in_order():
+            with clock.in_force(), _leaving_in_order(), _children_as_python_has_them():
                 runpy.run_path(str(file.path), run_name="__main__")
                 _wait_for_threads(threads)
         except StopScript:
@@ -131,7 +132,8 @@ def _as_python_would(script: Path, arguments: Sequence[str], seed: int) -> Itera
         with warnings.catch_warnings():
             warnings.simplefilter("default")
             warnings.filterwarnings("ignore", category=DeprecationWarning)
-            warnings.filterwarnings("ignore", category=PendingDeprecationWarning)
+            for quiet in (PendingDeprecationWarning, ImportWarning, ResourceWarning):
+                warnings.filterwarnings("ignore", category=quiet)
             yield
     finally:
         sys.argv, sys.path[:] = argv, path
@@ -157,6 +159,24 @@ def _leaving_in_order() -> Iterator[None]:
         yield
     finally:
         os._exit = leave
+
+
+@contextmanager
+def _children_as_python_has_them() -> Iterator[None]:
+    """Processes that a script makes end on a signal as Python's do: how we are asked to end is not their matter."""
+    from multiprocessing.util import register_after_fork
+
+    class Mark:
+        """Lives as long as the block, and with it what was registered."""
+
+    def plain(_: Mark) -> None:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    mark = Mark()
+    register_after_fork(mark, plain)
+    yield
+    del mark
 
 
 def _wait_for_threads(before: set[threading.Thread]) -> None:

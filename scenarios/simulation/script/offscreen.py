@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
-from matplotlib.backend_bases import FigureManagerBase
+from matplotlib._pylab_helpers import Gcf
+from matplotlib.backend_bases import FigureManagerBase, TimerBase
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+UNSEEN = "off screen an animation does not play: call its function in a loop, or start with --show"
 
 
 class FigureManager(FigureManagerBase):
@@ -17,12 +21,23 @@ class FigureManager(FigureManagerBase):
     @classmethod
     def pyplot_show(cls, *, block: bool | None = None) -> None:
         """Return at once, as if each window had been closed."""
+        for manager in Gcf.get_all_fig_managers():
+            if getattr(manager.canvas, "timed", False):
+                manager.canvas.draw()  # which an animation takes for having been seen
+                warnings.warn(UNSEEN, stacklevel=3)
+                return
 
 
 class FigureCanvas(FigureCanvasAgg):
     """Agg's, but that ``draw_idle`` waits until someone looks."""
 
     manager_class = FigureManager
+    timed = False
+
+    def new_timer(self, *args: Any, **kwargs: Any) -> TimerBase:
+        """A timer that never fires: nobody waits for it."""
+        self.timed = True
+        return super().new_timer(*args, **kwargs)
 
     def draw_idle(self, *args: Any, **kwargs: Any) -> None:
         """Do nothing: nobody looks."""

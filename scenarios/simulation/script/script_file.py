@@ -56,6 +56,8 @@ def read(path: Path, version: Version | None = None) -> ScriptFile:
     """
     if path.suffix == ".m":
         raise InputError(f"{path}: a MATLAB script; expected a Python script for rps")
+    if path.is_dir():
+        raise InputError(f"{path}: a folder; expected a script in it, such as {path / '__main__.py'}")
     try:
         source = read_regular(path)
     except OSError as error:

@@ -2,6 +2,7 @@
 
 import json
 import random
+import signal
 import sys
 import time
 from collections.abc import Callable
@@ -10,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from scenarios.simulation.script.execute import _children_as_python_has_them
 from scenarios.storage import script_folder
 
 Cli = Callable[..., tuple[int, str, str]]
@@ -80,6 +82,11 @@ def test_a_script_runs_to_its_end_and_its_folder_has_what_happened(run: Callable
             "velocities of robot 0 must be finite",
         ),
         ("go(5)\nopen('gains.mat')\n", 1, "raised", "MATLAB file"),
+        ("go(5)\nfrom rps.utilities.misc import at_pse\n", 1, "raised", "did you mean 'at_pose'?"),
+        ("go(5)\nr.figure\n", 1, "raised", "hint: it is of generation 1 of rps: --rps 1"),
+        ("go(5)\nimport sys\nsys.argv[1]\n", 1, "raised", "hint: arguments of the script come after --"),
+        ("go(5)\nfrom . import helper\n", 1, "raised", "hint: Python starts a script outside of packages"),
+        ("go(5)\nraise EOFError\n", 1, "raised", "hint: it asks for input"),
         ("go(5)\nr.get_poses()\nr.get_poses()\n", 1, "raised", "get_poses() was called twice"),
     ],
 )
@@ -98,6 +105,37 @@ def test_a_script_that_never_ends_is_stopped_when_its_time_is_over(run: Callable
     )
     assert (code, result["outcome"], result["steps"]) == (0, "stopped", 31)
     assert "was stopped at the end of --duration" in out
+
+
+def test_a_script_without_an_end_is_stopped_after_an_hour_of_its_own_time(
+    run: Callable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("scenarios.simulation.script.execute.CONTROL_PERIOD", 600.0)
+    code, _, _, result = run("while True:\n    go(1)\n")
+    assert (code, result["outcome"], result["steps"]) == (0, "stopped", 6)
+
+
+def test_an_animation_that_nobody_sees_is_told_of(run: Callable) -> None:
+    lines = "import matplotlib.pyplot as plt\nfrom matplotlib.animation import FuncAnimation\ngo(2)\n"
+    with pytest.warns(UserWarning, match="off screen an animation does not play"):
+        code, _, _, result = run(lines + "a = FuncAnimation(plt.figure(), lambda k: [], frames=3)\nplt.show()\nplt.close('all')\n")
+    assert (code, result["steps"]) == (0, 2)
+
+
+def test_processes_of_a_script_end_on_signals_as_pythons_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    registered: list[tuple[object, Callable[[object], None]]] = []
+    monkeypatch.setattr("multiprocessing.util.register_after_fork", lambda *entry: registered.append(entry))
+    before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGINT)}
+    try:
+        signal.signal(signal.SIGTERM, lambda *_: None)
+        with _children_as_python_has_them():
+            ((mark, forked),) = registered
+            forked(mark)
+        assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
+        assert signal.getsignal(signal.SIGINT) == signal.default_int_handler
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def test_more_robots_than_the_testbed_has_are_refused_in_one_line(run: Callable) -> None:
@@ -128,6 +166,7 @@ def test_files_that_are_not_there_and_options_that_cannot_be_are_refused(cli: Cl
     for arguments, words in (
         (("absent.py",), "absent.py: cannot be read"),
         (("mine.m",), "MATLAB script"),
+        ((".",), "a folder; expected a script in it, such as __main__.py"),
         (("mine.py", "--plant", "saturatd"), "did you mean 'saturated'?"),
         (("mine.py", "--drive-to-start", "--near-start"), "not together"),
     ):
