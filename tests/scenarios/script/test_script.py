@@ -117,8 +117,9 @@ def test_a_script_without_an_end_is_stopped_after_an_hour_of_its_own_time(
 
 def test_an_animation_that_nobody_sees_is_told_of(run: Callable) -> None:
     lines = "import matplotlib.pyplot as plt\nfrom matplotlib.animation import FuncAnimation\ngo(2)\n"
+    lines += "a = FuncAnimation(plt.figure(), lambda k: [], frames=3)\nplt.show()\nplt.close('all')\n"
     with pytest.warns(UserWarning, match="off screen an animation does not play"):
-        code, _, _, result = run(lines + "a = FuncAnimation(plt.figure(), lambda k: [], frames=3)\nplt.show()\nplt.close('all')\n")
+        code, _, _, result = run(lines)
     assert (code, result["steps"]) == (0, 2)
 
 
