@@ -27,6 +27,9 @@ FigureCanvasAgg.draw_idle = lambda self, *a, **k: None
 FigureCanvasAgg.start_event_loop = lambda self, *a, **k: None
 plt.show = lambda *a, **k: None
 
+STUCK = 6000
+"""Steps, 198 s, after which robots on their way to the start count as stuck."""
+
 LEFT = 1e-7
 """m/s, below which the solver's answer to a robot that is to stand is what its tolerance leaves."""
 
@@ -63,7 +66,7 @@ def main() -> None:
                 after[:2] = before[:2] + chord * np.array([np.cos(before[2] + turn / 2), np.sin(before[2] + turn / 2)])
             passed[0] += 0.033
             steps = self._iteration if second else self._iterations
-            if steps >= int(limit):
+            if steps >= int(limit) or (getattr(self, "initializing", False) and steps >= STUCK):
                 raise Limit
 
     simulator.Robotarium = Robotarium

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import textwrap
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -78,6 +79,16 @@ def open_ended(console: Console, name: str) -> Iterator[Callable[[str], None]]:
                 progress.update(task, said=text)
 
         yield say
+
+
+def print_wrapped(console: Console, text: str) -> None:
+    """Print a line; on a terminal it breaks between words, the rest two blanks further in. Programs get it whole."""
+    if console.is_terminal:
+        inner = " " * (len(text) - len(text.lstrip()) + GAP)
+        text = textwrap.fill(
+            text, console.width, subsequent_indent=inner, break_long_words=False, break_on_hyphens=False
+        )
+    console.print(escape(text))
 
 
 def new_table(*columns: str, title: str | None = None) -> Table:

@@ -51,6 +51,7 @@ def export(
     from scenarios.export.script import script
     from scenarios.measures.predictions.remarks import remarks
     from scenarios.storage.files import write_whole
+    from scenarios.terminal import new_console, print_wrapped
 
     changes = changed(changes, safety=safety)
     experiment = open_experiment(scenario, changes, duration)
@@ -60,8 +61,9 @@ def export(
         notes.append(remark)
     if not checked:
         notes.extend(_misses(experiment, text))
+    told = new_console(stderr=True)
     for remark in notes:
-        click.echo(f"note: {remark}", err=True)
+        print_wrapped(told, f"note: {remark}")
     if out is not None:
         if out.exists() and not force:
             raise InputError(f"--out {out}: exists, and may hold changes of yours; --force replaces it")

@@ -30,7 +30,7 @@ from scenarios.simulation.script.frames import FINAL_DOTS_PER_INCH, Camera, all_
 from scenarios.simulation.script.screen import take_the_screen_away
 from scenarios.simulation.script.script_file import ScriptFile
 from scenarios.storage import run_folder, script_folder
-from scenarios.terminal import open_ended
+from scenarios.terminal import open_ended, print_wrapped
 
 if TYPE_CHECKING:
     from scenarios.recording.script_live import ScriptView
@@ -133,7 +133,7 @@ def _session(
     def tell(text: str) -> None:
         if text not in told:
             told.add(text)
-            console.print(f"note: {escape(text)}")
+            print_wrapped(console, f"note: {text}")
 
     return Session(
         settings.plant,

@@ -26,7 +26,7 @@ from scenarios.export.script import script
 from scenarios.measures.window import trailing
 from scenarios.simulation.script.execute import execute
 from scenarios.simulation.script.script_file import read
-from scenarios.terminal import new_table, print_table
+from scenarios.terminal import new_table, print_table, print_wrapped
 
 Real = NDArray[np.float64]
 
@@ -147,7 +147,7 @@ def print_check(console: Console, experiment: Experiment, found: Sequence[Arriva
     console.print()
     for each in found:
         if not each.arrives:
-            console.print(f"{each.plant}, seed {each.seed}: {why(each, experiment)}")
+            print_wrapped(console, f"{each.plant}, seed {each.seed}: {why(each, experiment)}")
     if all(each.arrives for each in found):
         console.print("The testbed would run it to its goal, from every one of these starts.")
 

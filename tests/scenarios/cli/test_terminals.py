@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
-from scenarios.terminal import new_table, print_table
+from scenarios.terminal import new_table, print_table, print_wrapped
 
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
 
@@ -62,6 +62,18 @@ def test_a_table_keeps_every_digit_whatever_shows_it(terminal: str, width: int) 
     assert all(f"quantity {k} (m)" in text for k in range(12))
     assert "…" not in text
     assert console.width == (80 if terminal == "dumb" else width)
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_a_long_line_breaks_between_words_on_a_terminal_alone(terminal: bool) -> None:
+    printed = io.StringIO()
+    console = Console(file=printed, width=30, force_terminal=terminal, highlight=False, soft_wrap=True)
+    text = f"  note: {'word [bold] ' * 8}".rstrip()
+    print_wrapped(console, text)
+    lines = printed.getvalue().splitlines()
+    assert printed.getvalue().split() == text.split()
+    assert (len(lines) > 1) == terminal
+    assert not terminal or (max(map(len, lines)) <= 30 and all(line.startswith("    ") for line in lines[1:]))
 
 
 @given(widths=st.lists(st.integers(1, 30), min_size=2, max_size=12), width=st.integers(40, 200))
