@@ -30,6 +30,9 @@ DRAWS = 300
 NOISE = Imperfections(position=0.01, bearing=np.radians(1.0), distance=0.01, angle=np.radians(1.0), ratio=0.05)
 """On robots with noise: 1 cm, 1 degree, 5 %."""
 
+AS_GIVEN = ('law.name="angle"', 'graph="given"')
+"""Settings with which every scenario is opened, whatever its own law: each row then builds its graph."""
+
 PLANTS = ("unicycle", "saturated", "pymunk")
 """Plants with wheels."""
 
@@ -115,7 +118,7 @@ def league(
     """
     if not 1 <= starts <= MOST_STARTS:
         raise InputError(f"--starts: expected 1 to {MOST_STARTS}, got {starts}")
-    experiment = open_experiment(scenario, (*changes, 'law.name="angle"', 'graph="given"'))
+    experiment = open_experiment(scenario, (*changes, *AS_GIVEN))
     done = []
     for number, entry in enumerate(rows):
         done.append(measure(experiment, (scenario, changes), entry, starts, robots))
@@ -159,7 +162,7 @@ def _compass(one: Player, draws: int) -> Compass:
 def robots_of(source: tuple[str, tuple[str, ...]], one: Player, plant: str) -> Experiment | None:
     """The scenario's robots with a row's law on a plant, until the row's horizon; None where they are not as many."""
     scenario, changes = source
-    settings = ('law.name="angle"', 'graph="given"', f"plant.name={plant}", "sensor.delay_periods=0")
+    settings = (*AS_GIVEN, f"plant.name={plant}", "sensor.delay_periods=0")
     experiment = open_experiment(scenario, (*changes, *settings), min(one.entry.horizon, 120.0))
     return None if one.formation.graph.n != experiment.n else on_robots(experiment, one)
 

@@ -10,13 +10,18 @@ from rich.console import Console
 
 from formation import needs
 from formation.graph.designs import DESIGNS
+from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.documents import markdown_table
+from scenarios.studies.league import noise
 from scenarios.studies.league.beside import beside, interval
 from scenarios.studies.league.citations import CITATIONS, Citation
 from scenarios.studies.league.ends import ENDS, RIGHT, STILL, TOLERANCE
 from scenarios.studies.league.ideal import BOX, NEAR
-from scenarios.studies.league.measure import COMPASS_DEG, PLANTS, Row
+from scenarios.studies.league.measure import AS_GIVEN, COMPASS_DEG, PLANTS, Row
 from scenarios.terminal import new_table, print_table
+
+PAPERS = "shape"
+"""The scenario whose target the first computation used."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +143,9 @@ def markdown(scenario: str, changes: tuple[str, ...], rows: Sequence[Row], start
     for sheet in sheets(rows):
         lines += ["", f"## {sheet.title}", "", *markdown_table(sheet.columns, sheet.rows, numbers=sheet.numbers)]
     lines += ["", *[line for remark in remarks(rows, robots) for line in (remark, "")]]
-    lines += _first(rows)
+    papers = scenario == PAPERS and not changes
+    lines += _first(rows) if papers else []
+    lines += _noise(open_experiment(scenario, (*changes, *AS_GIVEN)), papers)
     lines += ["## The paper's references", "", *_citations(CITATIONS)]
     lines += [
         "",
@@ -164,6 +171,27 @@ def _first(rows: Sequence[Row]) -> list[str]:
     columns = ("law", "first", "here", "difference, 99.9 %", "")
     text = "Other code, with other starts (300; the triangle's 1000) in the same square, once gave the shares `first`."
     return ["## Beside a first computation", "", text, "", *markdown_table(columns, cells), ""]
+
+
+def _noise(experiment: Experiment, papers: bool) -> list[str]:
+    text = (
+        "Root mean square distance of the followers from their mean places with 1 degree of noise on every bearing and "
+        f"5 % on the ratio of a follower's two distances, or on each of them, new every {noise.PERIOD * 1e3:g} ms: the "
+        "covariance of the linearised loop with held commands. Eq. (u) with the same sensors has its first distance as "
+        "it is, and its second as the ratio gives it. Size: the distance of agents 1 and 2. The mean moves as well, in "
+        "second order: a ratio with a symmetric error r (1 + e) is not symmetric in 1 / r."
+    )
+    table = markdown_table(noise.COLUMNS, noise.table(experiment, papers))
+    lines = ["## Without distances, with noise", "", text, "", *table, ""]
+    if papers:
+        both = " and ".join(f"{' '.join(f'{mm:.1f}' for mm in noise.FIRST[law])} ({law})" for law in noise.FIRST)
+        lines += [
+            f"The first computation gave {both}; its note says 0.5 m/s and no size. One row of each law is within "
+            f"{noise.WITHIN:.0%} of it, `as first`: 5 % of the ratio, 1 m, and 1 m/s for the ratio law. With 5 % of "
+            "each distance and 0.5 m/s the ratio law's are 7 % off, and eq. (u)'s a third: that it cannot have been.",
+            "",
+        ]
+    return lines
 
 
 def _citations(citations: Sequence[Citation]) -> list[str]:

@@ -77,6 +77,6 @@ def switched(hold: float, runs: int, duration: float = 60.0, period: float = 0.0
     return np.linalg.norm(points - ends, axis=2).max(axis=1)
 
 
-@pytest.mark.parametrize("hold", [0.02, 1.0])
+@pytest.mark.parametrize("hold", [0.02, 0.1, 1.0])
 def test_any_switching_of_pairs_converges_to_the_same_place(hold: float) -> None:
-    assert switched(hold, 60).max() < 1e-3
+    assert switched(hold, 300, duration=40.0).max() < 1e-6
