@@ -74,6 +74,7 @@ def pair_ends(start: Real, phases: Sequence[Phase], first_follower: str, feedfor
             e_12 = {
                 "stationary": e_12,
                 "displacement": delta,
+                "spiral": delta,
                 "distance": abs(delta) * e_12 / abs(e_12),
                 "bearing": abs(e_12) * delta / abs(delta),
             }[first_follower]

@@ -5,9 +5,10 @@ With e the displacement, e_0 its start and delta the one that is commanded,
     displacement   e(t) = delta + (e_0 - delta) e^{-t}                                                 rate 1
     distance       |e(t)|^2 = D^2 / (1 + (D^2 / |e_0|^2 - 1) e^{-2 D^2 t}), direction kept, D = |delta|  rate 2 D^2
     bearing        tan(phi(t) / 2) = tan(phi_0 / 2) e^{-t / |e_0|}, length kept, phi = angle from delta  rate 1 / |e_0|
+    spiral         e(t) = delta exp(Log(e_0 / delta) e^{-t})                                                   rate 1
 
-The last two are almost global: e_0 = 0, and the direction opposite to delta, are places of rest that no other start
-reaches. Where delta changes, the linear law has its solution in :func:`formation.analysis.exact.steer`.
+Distance and bearing are almost global: e_0 = 0, and the direction opposite to delta, are places of rest that no other
+start reaches. Where delta changes, the linear law has its solution in :func:`formation.analysis.exact.steer`.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from formation.laws.first_follower import logarithm
 from formation.plane import Complex, Real
 
 SETTLED = 45.0
@@ -37,7 +39,7 @@ class Motion:
     nearest: Callable[[float], float] = lambda t: np.inf
 
 
-LAWS = ("stationary", "displacement", "distance", "bearing")
+LAWS = ("stationary", "displacement", "distance", "bearing", "spiral")
 
 
 def motion(law: str, start: Complex, delta: complex | None) -> Motion:
@@ -53,6 +55,11 @@ def motion(law: str, start: Complex, delta: complex | None) -> Motion:
         return Motion(lambda t: start + np.zeros_like(t))
     if law == "displacement":
         return Motion(lambda t: delta + (start - delta) * np.exp(-t))
+    if law == "spiral":
+        power = logarithm(start / delta)
+        return Motion(
+            lambda t: delta * np.exp(power * np.exp(-t)), lambda t: np.pi / (1.0 + float(np.abs(power).max()))
+        )
     length = np.abs(start)
     if law == "distance":
         wanted, far = abs(delta) ** 2, float(length.max()) ** 2
@@ -80,4 +87,5 @@ def rate(law: str, start: complex, delta: complex | None) -> float:
     """The rate, 1/s, at which e_12 nears its end; 0 where nothing steers it."""
     if delta is None or law == "stationary":
         return 0.0
-    return {"displacement": 1.0, "distance": 2.0 * abs(delta) ** 2, "bearing": 1.0 / abs(start)}[law]
+    rates = {"displacement": 1.0, "distance": 2.0 * abs(delta) ** 2, "bearing": 1.0 / abs(start), "spiral": 1.0}
+    return rates[law]

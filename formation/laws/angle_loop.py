@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 
 from formation import agents
 from formation.laws.angle import AngleLaw
+from formation.laws.first_follower import BESIDE
 from formation.target import TargetFormation
 
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-FIRST_FOLLOWERS = ("stationary", "displacement", "distance", "bearing")
+FIRST_FOLLOWERS = ("stationary", "displacement", "distance", "bearing", "spiral")
 """The laws of :data:`formation.EDGE_LAWS`, by the number that the loops use."""
 
 _LEADER, _FIRST = agents.LEADER, agents.FIRST_FOLLOWER
@@ -87,6 +88,11 @@ def feedback(
             elif law.first_follower == 2:
                 pull = size2 - e2
                 gx[_FIRST, m], gy[_FIRST, m] = pull * ex, pull * ey
+            elif law.first_follower == 4:
+                along, across = ex * tx + ey * ty, ey * tx - ex * ty
+                turned = math.atan2(across - BESIDE * along, along + BESIDE * across) + BESIDE
+                grown = 0.5 * math.log(e2 / size2)
+                gx[_FIRST, m], gy[_FIRST, m] = ey * turned - ex * grown, -ex * turned - ey * grown
             else:
                 length = math.sqrt(e2)
                 bx, by, wx, wy = ex / length, ey / length, tx / size, ty / size

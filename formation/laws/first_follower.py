@@ -13,6 +13,9 @@ import numpy as np
 
 from formation.plane import Complex
 
+BESIDE = 1e-6
+"""Radians."""
+
 EdgeLaw = Callable[[Complex, Complex], Complex]
 """Maps (e, delta) to a velocity: complex arrays (...) in one frame, metres to metres per second."""
 
@@ -52,8 +55,30 @@ def align(b: Complex, delta: Complex) -> Complex:
     return b_star - b * (np.conj(b) * b_star).real
 
 
+def spiral(e: Complex, delta: Complex) -> Complex:
+    """u = -e Log(e / delta). Steers scale and orientation; ours, not the paper's.
+
+    Length and direction of e go their own ways, ln(|e| / |delta|) and the angle from delta each as e^{-t}: where the
+    displacement law sends the first follower straight through the leader, and all others after it into one place, the
+    formation turns, and is never smaller than it starts or ends. Near its end it is the displacement law. Needs a
+    compass. From opposite to delta it turns clockwise; NaN while the two agents coincide.
+    """
+    return -e * logarithm(e / delta)
+
+
+def logarithm(ratio: Complex) -> Complex:
+    """Log with its cut :data:`BESIDE` the negative axis, so that rounding does not choose the way around."""
+    return np.log(ratio * np.exp(-1j * BESIDE)) + 1j * BESIDE
+
+
 EDGE_LAWS: Mapping[str, EdgeLaw] = MappingProxyType(
-    {"stationary": stationary, "displacement": displacement, "distance": distance, "bearing": bearing}
+    {
+        "stationary": stationary,
+        "displacement": displacement,
+        "distance": distance,
+        "bearing": bearing,
+        "spiral": spiral,
+    }
 )
 """The laws by the name that scenario files use."""
 

@@ -88,7 +88,7 @@ def pair_displacement(
     own_size, own_turn = (size, turn) if feedforward else (np.ones_like(size), np.ones_like(turn))
     if delta is None or first_follower == "stationary":
         return e_12 * own_size * own_turn
-    if first_follower == "displacement":
+    if first_follower in ("displacement", "spiral"):
         return delta * factor
     if first_follower == "distance":
         return abs(delta) * size * own_turn * (e_12 / abs(e_12))

@@ -188,8 +188,10 @@ class LawTable(Table):
     ] = "angle"
     """The paper's law, one of those that it weighs itself against (docs/laws.md), or an own law, whose file is
     executed."""
-    first_follower: Literal["stationary", "displacement", "distance", "bearing"] = "stationary"
-    """What the first follower of the angle law does with the phases' displacement."""
+    first_follower: Literal["stationary", "displacement", "distance", "bearing", "spiral"] = "stationary"
+    """What the first follower of the angle law does with the phases' displacement. "spiral" reaches it as
+    "displacement" does, but around the leader where that leads through it, so that the formation turns and does not
+    shrink."""
     gain: Literal["paper", "normalised"] = "paper"
     """Of all followers of the angle law: 1, eq. (u) as the paper has it, or 1 / sin^2, which makes all rates 1 per
     second; `show` tells its price in noise."""

@@ -11,6 +11,11 @@ FIRST_FOLLOWER = {
         "    wanted = delta / abs(delta)\n"
         "    u[1] = wanted - b * (b.conjugate() * wanted).real\n"
     ),
+    "spiral": (
+        "    e = p[1] - p[0]  # agent {number}, the first follower\n"
+        "    turn = np.log(e / delta * np.exp(-1e-6j)) + 1e-6j\n"
+        "    u[1] = -e * turn\n"
+    ),
 }
 
 SCALING = """\

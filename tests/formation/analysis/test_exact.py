@@ -16,7 +16,7 @@ from formation.references.protocol import NO_BENDS
 from formation.references.ramps import Ramps
 
 SEEDS = st.integers(0, 2**32 - 1)
-LAWS = ["stationary", "displacement", "distance", "bearing"]
+LAWS = ["stationary", "displacement", "distance", "bearing", "spiral"]
 PHASE = Phase("p", 3.0, (0.05, -0.02), (0.3, 0.4))
 
 
@@ -57,7 +57,7 @@ def test_the_first_followers_motion_solves_its_law(
     assert e(np.array(0.0)) == pytest.approx(start, abs=1e-12)
 
 
-@pytest.mark.parametrize("law", ["displacement", "distance", "bearing"])
+@pytest.mark.parametrize("law", ["displacement", "distance", "bearing", "spiral"])
 @given(start=st.floats(0.3, 1.0), length=st.floats(0.3, 1.0), turn=st.floats(-2.0, 2.0))
 def test_the_first_follower_nears_its_end_at_its_late_rate(law: str, start: float, length: float, turn: float) -> None:
     e_0, delta = complex(start), length * np.exp(1j * turn)

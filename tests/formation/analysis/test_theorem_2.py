@@ -37,7 +37,7 @@ def settle(law: str, e: complex, delta: complex, duration: float = 200.0, h: flo
     return e
 
 
-@pytest.mark.parametrize("law", ["stationary", "displacement", "distance", "bearing"])
+@pytest.mark.parametrize("law", ["stationary", "displacement", "distance", "bearing", "spiral"])
 @given(r=length, a=angle, r_star=length, turn=st.floats(-2.5, 2.5))
 def test_the_predicted_pair_is_where_the_first_followers_law_settles(
     law: str, r: float, a: float, r_star: float, turn: float

@@ -11,7 +11,7 @@ from formation import AngleLaw, SensingGraph, Similarity, TargetFormation, decay
 from formation.plane import as_complex, as_vectors
 
 seeds = st.integers(0, 2**32 - 1)
-LAWS = ["stationary", "displacement", "distance", "bearing"]
+LAWS = ["stationary", "displacement", "distance", "bearing", "spiral"]
 
 
 def random_target(seed: int, n: int = 7) -> TargetFormation:

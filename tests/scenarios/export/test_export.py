@@ -56,7 +56,7 @@ def test_the_script_moves_the_robots_as_the_run_does(
     moves_as_the_run(experiment, 3, plant, atol)
 
 
-@pytest.mark.parametrize("first_follower", ["stationary", "displacement", "distance", "bearing"])
+@pytest.mark.parametrize("first_follower", ["stationary", "displacement", "distance", "bearing", "spiral"])
 def test_every_first_follower_acts_in_the_script_as_in_the_run(
     moves_as_the_run: Same, varied: Callable[..., Experiment], first_follower: str
 ) -> None:

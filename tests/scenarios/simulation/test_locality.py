@@ -9,7 +9,7 @@ from scenarios.definition.experiment import Experiment
 from scenarios.simulation.controller import Controller
 from scenarios.simulation.loop import simulate
 
-LAWS = ["stationary", "displacement", "distance", "bearing"]
+LAWS = ["stationary", "displacement", "distance", "bearing", "spiral"]
 Moving = Callable[..., Experiment]
 
 

@@ -30,6 +30,7 @@ def test_a_designed_scenario_is_the_chosen_graph_under_the_same_numbers_and_ends
     write_scenario(found, tmp_path / "designed.toml")
     designed, given = open_experiment(str(tmp_path / "designed.toml")), open_experiment("maneuver")
     assert designed.numbers[:2] == tuple(found.question.numbers[row] for row in found.chosen.choice.leaders)
+    assert (given.first_follower, designed.first_follower) == ("displacement", "spiral")
     assert sorted(designed.numbers) == [1, 2, 3, 4, 5, 6]
     order = np.argsort(designed.numbers)
     np.testing.assert_allclose(designed.initial_points(0)[order], given.initial_points(0))
