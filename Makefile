@@ -11,7 +11,7 @@ SCENARIO ?= shape
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install run test quick lint check bench figures dist lowest mutants fuzz kills pairs evidence screenshots docs clean
+.PHONY: help install run test quick lint check bench figures dist lowest mutants fuzz kills pairs evidence screenshots gallery docs clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -65,8 +65,8 @@ figures: $(STAMP) ## draw the figures of the documents, the film included
 	cp runs/figures/maneuver/figure-graph.png runs/figures/maneuver/figure-decay.png \
 		runs/figures/maneuver/figure-separation.png docs/images
 	$(BIN)/formation run maneuver-testbed --out runs/figures/maneuver-testbed
-	$(BIN)/formation animate runs/figures/maneuver-testbed --speed 12 --fps 12
-	cp runs/figures/maneuver-testbed/animation.gif docs/images/maneuver-testbed.gif
+	$(BIN)/formation animate runs/figures/maneuver-testbed --speed 12 --fps 12 --format webp
+	cp runs/figures/maneuver-testbed/animation.webp docs/images/maneuver-testbed.webp
 	for name in gap enclose; do \
 		$(BIN)/formation run $$name --out runs/figures/$$name && \
 		cp runs/figures/$$name/figure-motion.png docs/images/figure-$$name.png || exit 1; done
@@ -108,8 +108,17 @@ evidence: $(STAMP) ## the Monte Carlo evidence over all seeds, printed (about 20
 screenshots: $(STAMP) ## pictures of the viewer for docs/recording.md (needs xvfb, Vulkan in software, chromium)
 	$(BIN)/python docs/screenshots.py
 
-docs: $(DOCS)/.installed ## the documentation site, strictly, into build/site
+gallery: ## the gallery of all scenarios: page, pictures and films
+	rm -f build/films/.made
+	$(MAKE) build/films/.made
+
+build/films/.made: $(STAMP) docs/gallery.py $(wildcard scenarios/library/* scenarios/baselines/*)
+	$(BIN)/python docs/gallery.py
+	@touch $@
+
+docs: $(DOCS)/.installed build/films/.made ## the documentation site, strictly, into build/site
 	NO_MKDOCS_2_WARNING=1 $(DOCS)/bin/mkdocs build --quiet
+	cp -R build/films build/site/films
 
 $(DOCS)/.installed: pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(DOCS)

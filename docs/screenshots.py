@@ -187,7 +187,7 @@ def running(command: list[str], environment: dict[str, str], port: int) -> Itera
 def keep(picture: Path, name: str) -> None:
     """Put a picture among the documents' images."""
     with Image.open(picture) as image:
-        image.convert("RGB").save(IMAGES / name, optimize=True)
+        image.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(IMAGES / name, optimize=True)
 
 
 def free_port() -> int:

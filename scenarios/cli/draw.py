@@ -56,30 +56,35 @@ def plot(run_folder: Path, out: Path | None, formats: tuple[str, ...], at: str) 
 
 @click.command()
 @options.run_folder
-@click.option("--format", "form", type=click.Choice(["gif", "mp4"]), default="gif", show_default=True)
+@click.option("--format", "form", type=click.Choice(["gif", "webp", "mp4"]), default="gif", show_default=True)
 @click.option("--speed", default=4.0, show_default=True, metavar="X", help="Simulated seconds per second.")
 @click.option("--fps", default=20.0, show_default=True, metavar="N", help="Frames per second.")
+@click.option("--width", default=720, show_default=True, metavar="PIXELS", help="Of a frame.")
+@click.option("--height", type=int, metavar="PIXELS", help="Of a frame.  [default: as the floor wants]")
 @options.out("Folder of the film.  [default: RUN]")
-def animate(run_folder: Path, form: str, speed: float, fps: float, out: Path | None) -> None:
-    """Film RUN, the folder of a finished run, as a GIF or an MP4."""
+def animate(
+    run_folder: Path, form: str, speed: float, fps: float, width: int, height: int | None, out: Path | None
+) -> None:
+    """Film RUN, the folder of a finished run, as a GIF, a WebP or an MP4; for slides, --width 1920 --height 1080."""
+    from scenarios.figures import Frame
     from scenarios.figures import animate as film
     from scenarios.measures.metrics import measure
     from scenarios.storage import script_folder
     from scenarios.storage.run_folder import read
     from scenarios.terminal import new_console, progress_bar
 
-    console, path = new_console(), (out or run_folder) / f"animation.{form}"
+    console, path, frame = new_console(), (out or run_folder) / f"animation.{form}", Frame(width, height)
     if script_folder.is_script(run_folder):
         from scenarios.figures.scripts.film import animate_script
 
         with progress_bar(console, path.name) as advance:
-            animate_script(script_folder.read(run_folder), path, speed, fps, advance)
+            animate_script(script_folder.read(run_folder), path, speed, fps, frame, advance)
         console.print(plain(str(path)), markup=False)
         return
     finished = read(run_folder)
     experiment, trajectory = finished.experiment, finished.trajectory
     with progress_bar(console, path.name) as advance:
-        film(experiment, trajectory, measure(experiment, trajectory), path, speed, fps, advance)
+        film(experiment, trajectory, measure(experiment, trajectory), path, speed, fps, frame, advance)
     console.print(plain(str(path)), markup=False)
 
 

@@ -6,6 +6,7 @@ from scenarios.figures.catalogue import draw as draw
 from scenarios.figures.catalogue import names_for as names_for
 from scenarios.figures.catalogue import plot as plot
 from scenarios.figures.films.encode import animate as animate
+from scenarios.figures.films.layout import Frame as Frame
 from scenarios.figures.style import FORMATS as FORMATS
 
-__all__ = ["FIGURES", "FORMATS", "OVERVIEW", "animate", "draw", "names_for", "plot"]
+__all__ = ["FIGURES", "FORMATS", "Frame", "OVERVIEW", "animate", "draw", "names_for", "plot"]

@@ -13,17 +13,17 @@ class Film:
 
     Attributes:
         data: content of the file.
-        form: ``gif`` or ``mp4``.
+        form: ``gif``, ``webp`` or ``mp4``.
     """
 
     data: bytes
-    form: Literal["gif", "mp4"]
+    form: Literal["gif", "webp", "mp4"]
 
     def __repr__(self) -> str:
         return f"<film, {self.form}, {len(self.data)} bytes>"
 
     def _repr_html_(self) -> str:
         encoded = base64.b64encode(self.data).decode()
-        if self.form == "gif":
-            return f'<img alt="film of the run" src="data:image/gif;base64,{encoded}">'
-        return f'<video controls loop muted src="data:video/mp4;base64,{encoded}"></video>'
+        if self.form == "mp4":
+            return f'<video controls loop muted src="data:video/mp4;base64,{encoded}"></video>'
+        return f'<img alt="film of the run" src="data:image/{self.form};base64,{encoded}">'

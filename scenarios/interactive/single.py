@@ -73,22 +73,31 @@ class Run:
 
         return draw(self.experiment, self.trajectory, self.metrics, name, at)
 
-    def animate(self, form: Literal["gif", "mp4"] = "gif", speed: float = 4.0, fps: float = 20.0) -> Film:
+    def animate(
+        self,
+        form: Literal["gif", "webp", "mp4"] = "gif",
+        speed: float = 4.0,
+        fps: float = 20.0,
+        width: int = 720,
+        height: int | None = None,
+    ) -> Film:
         """The film of ``formation animate``, which a notebook plays.
 
         Args:
             form: of its bytes.
             speed: simulated seconds per second.
             fps: frames per second.
+            width, height: pixels; without a height, as high as the floor wants.
 
         Raises:
-            InputError: ``speed`` or ``fps`` is out of range.
+            InputError: one of them is out of range.
         """
-        from scenarios.figures import animate  # loads matplotlib
+        from scenarios.figures import Frame, animate  # loads matplotlib
 
         with TemporaryDirectory() as folder:
             path = Path(folder) / f"animation.{form}"
-            animate(self.experiment, self.trajectory, self.metrics, path, speed, fps, lambda done, total: None)
+            frame, quiet = Frame(width, height), lambda done, total: None
+            animate(self.experiment, self.trajectory, self.metrics, path, speed, fps, frame, quiet)
             return Film(path.read_bytes(), form)
 
     def save(self, folder: str | Path) -> Path:

@@ -1,11 +1,11 @@
-"""Frames to GIF (Pillow) or MP4 (PyAV, which carries its encoder), into files that are whole or absent."""
+"""Frames to GIF, WebP (Pillow) or MP4 (PyAV, which carries its encoder), into files that are whole or absent."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from PIL import Image
 from scenarios.definition.experiment import Experiment
 from scenarios.errors import InputError
 from scenarios.figures.films.film import Film, Pixels
+from scenarios.figures.films.layout import Frame
 from scenarios.figures.style import print_style
 from scenarios.measures.metrics import Metrics
 from scenarios.simulation.trajectory import Trajectory
@@ -25,8 +26,8 @@ HOLD = 1.5
 LEAST_FPS = 0.1
 """Frames per second, at least: a GIF counts a frame's hundredths of a second in 16 bits."""
 
-FPS_LIMIT = {".gif": 50.0, ".mp4": 240.0}
-"""Frames per second, at most: viewers show faster GIFs slower, and no screen shows a faster film."""
+FPS_LIMIT = {".gif": 50.0, ".webp": 50.0, ".mp4": 240.0}
+"""Frames per second, at most: viewers show faster pictures that move slower, and no screen shows a faster film."""
 
 FASTEST = 1e6
 """Simulated seconds per second: the longest run in a blink."""
@@ -35,12 +36,18 @@ X264 = {"crf": "20", "threads": "1"}
 """Lines stay sharp, and a minute takes about a megabyte; with one thread the bytes depend on no processor's cores."""
 
 COLOURS = 128
-"""Of a GIF's palette; enough for the agents' colours and the steps between them and white."""
+"""Of the palette of a GIF or a WebP; enough for the agents' colours and the steps between them and white."""
 
 NEARLY_WHITE = 248
 
 MAX_FRAMES = 20_000
 """Over five minutes of film at 60 frames per second; more is a slip of the keys."""
+
+PIXELS = (160, 7680)
+"""Of a frame's sides: below, nothing can be told apart; above, no screen shows it."""
+
+LONGEST = 3.0
+"""Times that one side is longer than the other, at most."""
 
 OnFrame = Callable[[int, int], None]
 
@@ -52,11 +59,13 @@ def animate(
     path: Path,
     speed: float,
     fps: float,
+    frame: Frame,
     on_frame: OnFrame,
 ) -> None:
     """Write the film of a run as ``path``; see :func:`write_film`."""
+    seconds = float(trajectory.t[-1])
     write_film(
-        lambda: Film(experiment, trajectory, metrics, speed, fps), float(trajectory.t[-1]), path, speed, fps, on_frame
+        lambda: Film(experiment, trajectory, metrics, speed, fps, frame), seconds, path, speed, fps, frame, on_frame
     )
 
 
@@ -72,21 +81,30 @@ class Reel(Protocol):
 
 
 def write_film(
-    make: Callable[[], Reel], seconds: float, path: Path, speed: float, fps: float, on_frame: OnFrame
+    make: Callable[[], Reel], seconds: float, path: Path, speed: float, fps: float, frame: Frame, on_frame: OnFrame
 ) -> None:
-    """Write a film as ``path``, a .gif or .mp4 file.
+    """Write a film.
 
     Args:
         make: makes the frames, in the style of print.
         seconds: that the run took.
-        path: its suffix chooses the kind.
+        path: a .gif, .webp or .mp4 file; a WebP is a quarter of a GIF.
         speed: simulated seconds per second of film.
         fps: frames per second.
+        frame: its pixels, which ``make`` knows of.
         on_frame: called after each frame with the number of frames done and of all frames.
 
     Raises:
-        InputError: ``speed`` or ``fps`` is out of range, or the file cannot be written.
+        InputError: ``speed``, ``fps`` or the frame is out of range, or the file cannot be written.
     """
+    _require_pixels("--width", frame.width)
+    if frame.height is not None:
+        _require_pixels("--height", frame.height)
+        if not 1.0 / LONGEST <= frame.width / frame.height <= LONGEST:
+            raise InputError(
+                f"--height: expected at most {LONGEST:g} times as much or as little as --width, {frame.width}, "
+                f"got {frame.height}"
+            )
     if not 0.0 < speed <= FASTEST:
         raise InputError(f"--speed: expected a positive number up to {FASTEST:g}, got {speed:g}")
     kind, most = path.suffix[1:], FPS_LIMIT[path.suffix]
@@ -100,12 +118,18 @@ def write_film(
         raise InputError(
             f"--speed, --fps: expected at most {MAX_FRAMES} frames, {speed:g} and {fps:g} make {wanted:.3g}"
         )
-    write = _gif if path.suffix == ".gif" else _mp4
+    write = _mp4 if path.suffix == ".mp4" else _moving_picture
     with print_style(), replacing(path) as scratch:
         write(make(), scratch, fps, on_frame)
 
 
-def _gif(film: Reel, path: Path, fps: float, on_frame: OnFrame) -> None:
+def _require_pixels(option: str, pixels: int) -> None:
+    low, high = PIXELS
+    if not low <= pixels <= high:
+        raise InputError(f"{option}: expected {low} to {high} pixels, got {pixels}")
+
+
+def _moving_picture(film: Reel, path: Path, fps: float, on_frame: OnFrame) -> None:
     total = len(film.rows)
     images = _reduced(film, on_frame)
     first = next(images)
@@ -113,10 +137,12 @@ def _gif(film: Reel, path: Path, fps: float, on_frame: OnFrame) -> None:
     ends = np.rint(100.0 * np.arange(1, total + 1) / fps)
     durations = (10.0 * np.diff(ends, prepend=0.0)).astype(int)
     durations[-1] += int(1000.0 * HOLD)
+    options: dict[str, Any] = {"save_all": True, "append_images": images, "duration": durations.tolist(), "loop": 0}
     with path.open("wb") as file:
-        first.save(
-            file, "GIF", save_all=True, append_images=images, duration=durations.tolist(), loop=0, optimize=False
-        )
+        if path.suffix == ".gif":
+            first.save(file, "GIF", optimize=False, **options)
+        else:
+            first.save(file, "WEBP", lossless=True, method=4, minimize_size=True, **options)
 
 
 def _reduced(film: Reel, on_frame: OnFrame) -> Iterator[Image.Image]:

@@ -17,6 +17,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from scenarios.definition.experiment import Experiment
+from scenarios.figures.films.layout import Frame, even, layout
 from scenarios.figures.floor import limits, placed, prepare, wedges
 from scenarios.figures.happenings import draw_passing, lasting, mark_times, news
 from scenarios.figures.palette import FAINT, INK, agent_colour
@@ -29,12 +30,6 @@ from scenarios.simulation.trajectory import Trajectory
 
 Pixels = NDArray[np.uint8]
 
-WIDTH, TALLEST_FLOOR = 5.0, 4.2
-"""Inches."""
-
-DOTS_PER_INCH = 144
-LEFT, RIGHT, BOTTOM, ERRORS, BETWEEN, TOP = 0.50, 0.14, 0.36, 0.70, 0.56, 0.26
-
 
 class Film:
     """The frames of a run.
@@ -43,6 +38,7 @@ class Film:
         experiment, trajectory, metrics: of the run; states that are not finite are left out.
         speed: simulated seconds per second of film.
         fps: frames per second.
+        frame: its pixels, of which an odd number loses one.
 
     Attributes:
         rows: (f,) rows of the trajectory, one per frame: the states nearest to the frames' times, the last included.
@@ -51,21 +47,27 @@ class Film:
     """
 
     def __init__(
-        self, experiment: Experiment, trajectory: Trajectory, metrics: Metrics, speed: float, fps: float
+        self,
+        experiment: Experiment,
+        trajectory: Trajectory,
+        metrics: Metrics,
+        speed: float,
+        fps: float,
+        frame: Frame,
     ) -> None:
         self._experiment, self._trajectory = experiment, trajectory
         self.rows = frame_rows(trajectory, speed, fps)
-        self._figure, (floor_width, floor_height) = _sheet(experiment, trajectory)
-        self._canvas = FigureCanvasAgg(self._figure)
-        width, height = self._canvas.get_width_height()
-        self.size = width - width % 2, height - height % 2
         shown = limits(experiment.arena, trajectory.poses)
-        self.floor = panel(self._figure, LEFT, BOTTOM + ERRORS + BETWEEN, floor_width, floor_height)
+        places = layout(frame, shown)
+        self._figure = Figure(figsize=places.size, dpi=places.dots_per_inch)
+        self._canvas = FigureCanvasAgg(self._figure)
+        self.size = even(self._canvas.get_width_height())
+        self.floor = panel(self._figure, *places.floor)
         prepare(self.floor, lasting(experiment), shown)
         self._passing = draw_passing(self.floor, experiment)
-        places = ";  + predicted places" if experiment.predicted else ""
-        self.floor.set_title(f"{experiment.file.name}, {experiment.plant}, {speed:g} x{places}", loc="left", pad=4.0)
-        self._errors = panel(self._figure, LEFT, BOTTOM, WIDTH - LEFT - RIGHT, ERRORS)
+        crosses = ";  + predicted places" if experiment.predicted else ""
+        self.floor.set_title(f"{experiment.file.name}, {experiment.plant}, {speed:g} x{crosses}", loc="left", pad=4.0)
+        self._errors = panel(self._figure, *places.errors)
         draw_error_sum(self._errors, experiment, trajectory, metrics)
         self._errors.set_xlabel("time (s)")
         mark_phases(self._errors, experiment, names=True)
@@ -112,7 +114,9 @@ class Film:
             self.floor.text(0.0, 0.0, str(self._experiment.number(row)), fontsize=SMALL, ha="left", va="bottom")
             for row in range(n if n <= MANY else 0)
         ]
-        self._clock = self.floor.text(1.0, 1.02, "", transform=self.floor.transAxes, ha="right", va="bottom")
+        self._clock = self.floor.annotate(
+            "", (1.0, 1.0), xycoords="axes fraction", xytext=(0.0, 4.0), textcoords="offset points", ha="right"
+        )
         self._news = self.floor.text(
             0.01,
             0.985,
@@ -180,14 +184,3 @@ def frame_rows(trajectory: Trajectory, speed: float, fps: float) -> NDArray[np.i
     t = trajectory.t[np.isfinite(trajectory.poses).all(axis=(1, 2))]
     times = np.arange(t[0], t[-1], speed / fps)
     return np.append(np.searchsorted((t[1:] + t[:-1]) / 2.0, times), len(t) - 1)
-
-
-def _sheet(experiment: Experiment, trajectory: Trajectory) -> tuple[Figure, tuple[float, float]]:
-    """A figure, and the size of its floor, inches."""
-    x0, x1, y0, y1 = limits(experiment.arena, trajectory.poses)
-    width = WIDTH - LEFT - RIGHT
-    height = width * (y1 - y0) / (x1 - x0)
-    if height > TALLEST_FLOOR:
-        width, height = width * TALLEST_FLOOR / height, TALLEST_FLOOR
-    total = BOTTOM + ERRORS + BETWEEN + height + TOP
-    return Figure(figsize=(WIDTH, total), dpi=DOTS_PER_INCH), (width, height)

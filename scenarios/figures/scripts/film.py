@@ -12,42 +12,42 @@ from matplotlib.figure import Figure
 
 from robots.model import GTERNAL
 from scenarios.figures.films.encode import OnFrame, write_film
-from scenarios.figures.films.film import DOTS_PER_INCH, Pixels
+from scenarios.figures.films.film import Pixels
+from scenarios.figures.films.layout import Frame, even, layout
 from scenarios.figures.floor import limits, placed, prepare, wedge
 from scenarios.figures.palette import agent_colour
-from scenarios.figures.scripts.overview import BOTTOM, FLOOR, LEFT, RIGHT
+from scenarios.figures.scripts.overview import FLOOR
 from scenarios.figures.style import panel
 from scenarios.storage.script_folder import ScriptRun
 
 
-def animate_script(run: ScriptRun, path: Path, speed: float, fps: float, on_frame: OnFrame) -> None:
-    """Write the film of a run as ``path``, .gif or .mp4; see :func:`scenarios.figures.films.encode.write_film`."""
-    write_film(lambda: ScriptFilm(run, speed, fps), float(run.record.t[-1]), path, speed, fps, on_frame)
+def animate_script(run: ScriptRun, path: Path, speed: float, fps: float, frame: Frame, on_frame: OnFrame) -> None:
+    """Write the film of a run as ``path``; see :func:`scenarios.figures.films.encode.write_film`."""
+    write_film(lambda: ScriptFilm(run, speed, fps, frame), float(run.record.t[-1]), path, speed, fps, frame, on_frame)
 
 
 class ScriptFilm:
     """The frames of a run: robots and their paths on the floor. See :class:`scenarios.figures.films.film.Film`."""
 
-    def __init__(self, run: ScriptRun, speed: float, fps: float) -> None:
+    def __init__(self, run: ScriptRun, speed: float, fps: float, frame: Frame) -> None:
         self._record = run.record
         t = run.record.t
         self.rows = np.append(np.searchsorted((t[1:] + t[:-1]) / 2.0, np.arange(t[0], t[-1], speed / fps)), len(t) - 1)
         shown = limits(FLOOR, run.record.poses)
-        width = 5.0
-        inner = width - LEFT - RIGHT
-        height = inner * (shown[3] - shown[2]) / (shown[1] - shown[0])
-        self._figure = Figure(figsize=(width, BOTTOM + height + 0.26), dpi=DOTS_PER_INCH)
+        places = layout(frame, shown, curve=False)
+        self._figure = Figure(figsize=places.size, dpi=places.dots_per_inch)
         self._canvas = FigureCanvasAgg(self._figure)
-        pixels = self._canvas.get_width_height()
-        self.size = pixels[0] - pixels[0] % 2, pixels[1] - pixels[1] % 2
-        self._floor = panel(self._figure, LEFT, BOTTOM, inner, height)
+        self.size = even(self._canvas.get_width_height())
+        self._floor = panel(self._figure, *places.floor)
         prepare(self._floor, FLOOR, shown)
         self._floor.set_title(f"{run.result['script']}, {run.result['plant']}, {speed:g} x", loc="left", pad=4.0)
         colours = [agent_colour(robot) for robot in range(run.record.poses.shape[1])]
         self._trails = LineCollection([], colors=colours, linewidths=0.9, alpha=0.75)
         self._bodies = PolyCollection([], facecolors=colours, edgecolors="white", linewidths=0.3)
         self._noses = PolyCollection([], facecolors="white", linewidths=0.0)
-        self._clock = self._floor.text(1.0, 1.02, "", transform=self._floor.transAxes, ha="right", va="bottom")
+        self._clock = self._floor.annotate(
+            "", (1.0, 1.0), xycoords="axes fraction", xytext=(0.0, 4.0), textcoords="offset points", ha="right"
+        )
         for artist in (self._trails, self._bodies, self._noses):
             self._floor.add_artist(artist)
         for moving in (self._trails, self._bodies, self._noses, self._clock):

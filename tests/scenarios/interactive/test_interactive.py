@@ -72,7 +72,7 @@ def test_a_run_shows_itself_as_the_command_prints_it(run: Run) -> None:
     assert repr(run) == f"<run of shape, saturated, seed 3: {run.result['outcome']}>"
 
 
-@pytest.mark.parametrize(("form", "magic"), [("gif", b"GIF8"), ("mp4", b"ftyp")])
+@pytest.mark.parametrize(("form", "magic"), [("gif", b"GIF8"), ("webp", b"WEBP"), ("mp4", b"ftyp")])
 def test_a_film_is_played_where_it_is_shown(run: Run, form: str, magic: bytes) -> None:
     film = run.animate(form, speed=10.0, fps=20.0)
     [encoded] = re.findall(r"base64,([^\"]+)", film._repr_html_())
