@@ -11,10 +11,10 @@ SCENARIO ?= shape
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install run test quick lint check bench figures dist lowest mutants fuzz kills pairs evidence screenshots gallery docs clean
+.PHONY: help install run test quick lint check bench figures dist lowest mutants fuzz kills pairs evidence screenshots gallery docs docs-check clean
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 install: $(STAMP) ## make .venv with everything that was tested; does nothing when nothing changed
 
@@ -126,6 +126,9 @@ $(DOCS)/.installed: pyproject.toml constraints.txt
 	sed -n '/^docs = \[/,/^\]/s/^ *"\(.*\)",$$/\1/p' pyproject.toml > $(DOCS)/requirements.txt
 	$(DOCS)/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --requirement $(DOCS)/requirements.txt
 	@touch $@
+
+docs-check: $(STAMP) ## every command of the documents, as it stands there (about 20 minutes; the suite runs the short ones)
+	DOCUMENTS_WHOLE=1 $(BIN)/pytest -n 0 tests/test_documents.py
 
 clean: ## remove the environment, caches and runs
 	rm -rf $(VENV) $(LOWEST) $(DOCS) $(DIST) runs build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache .benchmarks
