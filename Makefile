@@ -116,9 +116,13 @@ build/films/.made: $(STAMP) docs/gallery.py $(wildcard scenarios/library/* scena
 	$(BIN)/python docs/gallery.py
 	@touch $@
 
-docs: $(DOCS)/.installed build/films/.made ## the documentation site, strictly, into build/site
+build/notebooks/.made: $(STAMP) docs/notebooks.py $(wildcard docs/notebooks/*.ipynb)
+	rm -rf build/notebooks
+	$(BIN)/python docs/notebooks.py build/notebooks
+	@touch $@
+
+docs: $(DOCS)/.installed build/films/.made build/notebooks/.made ## the documentation site, strictly, into build/site
 	NO_MKDOCS_2_WARNING=1 $(DOCS)/bin/mkdocs build --quiet
-	cp -R build/films build/site/films
 
 $(DOCS)/.installed: pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(DOCS)

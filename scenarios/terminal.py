@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import sys
 import textwrap
 import time
 from collections.abc import Callable, Iterator
@@ -17,6 +18,8 @@ from rich.measure import Measurement
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
+from scenarios.errors import plain
+
 LEFT = frozenset(
     ("scenario", "title", "angle", "agent", "senses", "phase", "plant", "law", "measures", "frame", "fixes")
     + ("key", "kind", "default", "meaning", "changes", "quantity", "result", "replay")
@@ -29,6 +32,9 @@ WRAPPED = frozenset(("title", "kind", "meaning"))
 
 PROGRESS_INTERVAL = 0.1
 """Seconds between two updates of a progress bar: more often cannot be read, and costs time."""
+
+SAID_EVERY = 10.0
+"""Seconds between two lines about the progress of work that no terminal watches."""
 
 GAP = 2
 """Blanks between two columns."""
@@ -44,22 +50,31 @@ def new_console(stderr: bool = False) -> Console:
 
 @contextmanager
 def progress_bar(console: Console, name: str) -> Iterator[Callable[[int, int], None]]:
-    """A progress bar on a terminal, gone when the work is done; the block calls what it gets with (done, total)."""
+    """A progress bar on a terminal, gone when the work is done; the block calls what it gets with (done, total).
+
+    Where the output goes elsewhere, a line on stderr now and then.
+    """
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
         TextColumn("{task.percentage:.0f} %"),
         TimeRemainingColumn(),
     )
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+    begun, watched = monotonic(), _is_watched(console)
+    with Progress(*columns, console=console, transient=True, disable=not watched) as progress:
         task = progress.add_task(escape(name))
-        due = time.monotonic()
+        due = begun if watched else begun + SAID_EVERY
 
         def advance(done: int, total: int) -> None:
             nonlocal due
-            if (now := time.monotonic()) >= due or done == total:
+            now = monotonic()
+            if watched and (now >= due or done == total):
                 due = now + PROGRESS_INTERVAL
                 progress.update(task, completed=done, total=total)
+            elif not watched and now >= due and 0 < done < total:
+                due = now + SAID_EVERY
+                left = (now - begun) * (total - done) / done
+                _say(console, f"{name}: {done} of {total}, {100.0 * done / total:.0f} %, about {left:.0f} s left")
 
         yield advance
 
@@ -68,15 +83,19 @@ def progress_bar(console: Console, name: str) -> Iterator[Callable[[int, int], N
 def open_ended(console: Console, name: str) -> Iterator[Callable[[str], None]]:
     """A progress line for work whose end is not known; the block calls what it gets with what there is to say."""
     columns = SpinnerColumn(), TextColumn("{task.description}"), TextColumn("{task.fields[said]}")
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+    watched = _is_watched(console)
+    with Progress(*columns, console=console, transient=True, disable=not watched) as progress:
         task = progress.add_task(escape(name), said="")
-        due = monotonic()
+        due = monotonic() + (0.0 if watched else SAID_EVERY)
 
         def say(text: str) -> None:
             nonlocal due
             if (now := monotonic()) >= due:
-                due = now + PROGRESS_INTERVAL
-                progress.update(task, said=text)
+                due = now + (PROGRESS_INTERVAL if watched else SAID_EVERY)
+                if watched:
+                    progress.update(task, said=text)
+                else:
+                    _say(console, f"{name}: {text}")
 
         yield say
 
@@ -89,6 +108,16 @@ def print_wrapped(console: Console, text: str) -> None:
             text, console.width, subsequent_indent=inner, break_long_words=False, break_on_hyphens=False
         )
     console.print(escape(text))
+
+
+def _is_watched(console: Console) -> bool:
+    """Whether somebody sees a line that changes; colours that are forced into a file make no terminal of it."""
+    return console.is_terminal and console.file.isatty()
+
+
+def _say(console: Console, text: str) -> None:
+    if not console.quiet:
+        print(plain(text), file=sys.stderr, flush=True)
 
 
 def new_table(*columns: str, title: str | None = None) -> Table:

@@ -1,5 +1,6 @@
 """What all tests share: hypothesis settings, scenarios made from the library's, and targets for benchmarks."""
 
+import math
 import os
 import shutil
 import signal
@@ -105,6 +106,8 @@ def cli(
     """Runs the command line in this process, in an empty folder: exit code, stdout, stderr."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("COLUMNS", raising=False)  # test runners in parallel set it for their own terminal
+
+    monkeypatch.setattr("scenarios.terminal.SAID_EVERY", math.inf)  # how often it is said tells how busy a machine is
 
     def run(*arguments: str) -> tuple[int, str, str]:
         monkeypatch.setattr(sys, "argv", ["formation", *arguments])

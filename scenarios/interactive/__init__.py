@@ -4,4 +4,4 @@ What makes them are the functions behind ``formation run`` and ``formation sweep
 nothing here parses or exits.
 """
 
-__all__ = ["film", "frames", "many", "single"]
+__all__ = ["film", "frames", "many", "single", "viewer"]

@@ -100,6 +100,21 @@ class Run:
             animate(self.experiment, self.trajectory, self.metrics, path, speed, fps, frame, quiet)
             return Film(path.read_bytes(), form)
 
+    def replay(self, width: int = 960, height: int = 600) -> Any:
+        """The recording of ``formation replay``, in the viewer inside a notebook.
+
+        Args:
+            width, height: pixels.
+
+        Raises:
+            InputError: rerun's package for notebooks is missing.
+        """
+        from scenarios.interactive.viewer import widget
+        from scenarios.recording.encode import encode  # loads rerun
+
+        recording = encode(self.experiment, self.seed, self.trajectory, self.metrics, self.result)
+        return widget(recording, width, height)
+
     def save(self, folder: str | Path) -> Path:
         """Write the run folder that ``formation run`` writes, for ``replay``, ``plot``, ``animate`` and ``run RUN``.
 
@@ -123,7 +138,7 @@ class Run:
 
         from scenarios.report.result import print_result
 
-        console = Console(file=StringIO(), record=True, highlight=False, width=WIDTH)
+        console = Console(file=StringIO(), record=True, highlight=False, width=WIDTH, force_jupyter=False)
         print_result(console, self.result)
         return console.export_html(inline_styles=True, code_format="<pre>{code}</pre>")
 

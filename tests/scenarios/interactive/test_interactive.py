@@ -3,8 +3,11 @@
 import base64
 import io
 import json
+import os
 import re
+import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import matplotlib
 import numpy as np
@@ -80,6 +83,27 @@ def test_a_film_is_played_where_it_is_shown(run: Run, form: str, magic: bytes) -
     assert magic in film.data[:12]
     if form == "gif":
         assert Image.open(io.BytesIO(film.data)).n_frames > 1
+
+
+def test_a_notebook_gets_the_recording_of_the_run_and_nothing_from_a_server(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sent = []
+
+    class Viewer:
+        def __init__(self, width: int, height: int) -> None:
+            sent.append((width, height, os.environ["RERUN_NOTEBOOK_ASSET"]))
+
+        def send_rrd(self, data: bytes) -> None:
+            sent.append(data[:4])
+
+    monkeypatch.delenv("RERUN_NOTEBOOK_ASSET", raising=False)
+    monkeypatch.setitem(sys.modules, "rerun_notebook", SimpleNamespace(Viewer=Viewer))
+    assert isinstance(run.replay(height=300), Viewer)
+    assert sent == [(960, 300, "serve-local"), b"RRF2"]
+    monkeypatch.setitem(sys.modules, "rerun_notebook", None)
+    with pytest.raises(InputError, match="the extra 'notebook'"):
+        run.replay()
 
 
 def test_a_sweep_is_a_frame_of_single_runs(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
