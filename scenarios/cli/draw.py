@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,33 +26,37 @@ if TYPE_CHECKING:
     "--at", "at", default="", metavar="T[,T...]", show_default=False,
     help="Seconds at which the overview shows the robots.  [default: start, end, and of few phases each end]",
 )  # fmt: skip
-def plot(run_folder: Path, out: Path | None, formats: tuple[str, ...], at: str) -> None:
+@click.option(
+    "--figure", "names", multiple=True, metavar="NAME", help="motion, graph, decay or separation.  [default: all]"
+)
+@options.look
+def plot(
+    run_folder: Path,
+    out: Path | None,
+    formats: tuple[str, ...],
+    at: str,
+    names: tuple[str, ...],
+    width: str | None,
+    font: str | None,
+    font_size: float | None,
+) -> None:
     """Draw the paper's figures of RUN, a finished run's folder; of a script's, its overview; of a sweep's, its runs."""
+    from scenarios.figures.style import look_for, print_style
     from scenarios.storage import script_folder
     from scenarios.studies.sweep.sheet import is_sweep
 
     times = _times(at)
-    if times and (is_sweep(run_folder) or script_folder.is_script(run_folder)):
-        raise InputError("--at: expected the folder of a scenario's run")
-    if is_sweep(run_folder):
-        _plot_sweep(run_folder, out or run_folder, formats)
-        return
-
-    if script_folder.is_script(run_folder):
-        _plot_script(run_folder, out, formats)
-        return
-    from scenarios.figures import names_for
-    from scenarios.figures import plot as draw
-    from scenarios.measures.metrics import measure
-    from scenarios.storage.run_folder import read
-    from scenarios.terminal import new_console
-
-    finished = read(run_folder)
-    experiment, trajectory = finished.experiment, finished.trajectory
-    metrics = measure(experiment, trajectory)
-    console = new_console()
-    for path in draw(experiment, trajectory, metrics, out or run_folder, names_for(experiment), formats, times):
-        console.print(plain(str(path)), markup=False)
+    whole = is_sweep(run_folder) or script_folder.is_script(run_folder)
+    for option, given in (("--figure", names), ("--at", times)):
+        if given and whole:
+            raise InputError(f"{option}: expected the folder of a scenario's run")
+    with print_style(look_for(width, font, font_size)):
+        if is_sweep(run_folder):
+            _plot_sweep(run_folder, out or run_folder, formats)
+        elif whole:
+            _plot_script(run_folder, out, formats)
+        else:
+            _plot_run(run_folder, out or run_folder, formats, names, times)
 
 
 @click.command()
@@ -161,6 +166,23 @@ def _times(text: str) -> list[float]:
         return [float(part) for part in text.split(",")] if text else []
     except ValueError:
         raise InputError(f"--at: expected seconds, separated by commas, got {text[:40]!r}") from None
+
+
+def _plot_run(
+    folder: Path, out: Path, formats: tuple[str, ...], names: tuple[str, ...], times: Sequence[float]
+) -> None:
+    from scenarios.figures import names_for
+    from scenarios.figures import plot as draw
+    from scenarios.measures.metrics import measure
+    from scenarios.storage.run_folder import read
+    from scenarios.terminal import new_console
+
+    finished = read(folder)
+    experiment, trajectory = finished.experiment, finished.trajectory
+    metrics = measure(experiment, trajectory)
+    console = new_console()
+    for path in draw(experiment, trajectory, metrics, out, names or names_for(experiment), formats, times):
+        console.print(plain(str(path)), markup=False)
 
 
 def _plot_sweep(folder: Path, out: Path, formats: tuple[str, ...]) -> None:

@@ -91,3 +91,14 @@ def out(what: str) -> Option:
 def markdown(what: str) -> Option:
     """The file for a report as Markdown; ``what`` says of what."""
     return click.option("--markdown", type=click.Path(path_type=Path, dir_okay=False), help=what)
+
+
+def look(command: Any) -> Any:
+    """How figures look: their width and their type."""
+    for option in (
+        click.option("--font-size", type=float, metavar="PT", help="Points of labels and titles.  [default: 7.5]"),
+        click.option("--font", metavar="FAMILY", help="serif, sans or a family's name.  [default: serif]"),
+        click.option("--width", metavar="W", help="Of the figures, 3.4in or 86mm, say.  [default: 3.4in]"),
+    ):
+        command = option(command)
+    return command

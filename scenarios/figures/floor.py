@@ -24,6 +24,9 @@ BEYOND = "#EDEDED"
 
 OBSTACLE = "#BDBDBD"
 
+HEAD = 0.07
+"""Metres; the length of an arrow's head on an edge."""
+
 MARGIN = 0.05
 """Free ground around all that is shown, as a share of its longer side."""
 
@@ -58,12 +61,31 @@ def draw_trails(axes: Axes, trajectory: Trajectory, width: float = 0.7) -> None:
 
 
 def draw_edges(axes: Axes, graph: Graph, points: Real, colour: str = FAINT) -> None:
-    """The formation graph's edges between points (n, 2): sensed ones solid, the added ones dashed."""
+    """The formation graph's edges between points (n, 2): sensed ones solid, the added ones dashed.
+
+    Where they are sensed one way only, a head on each points to the agent that is sensed.
+    """
     segments = points[graph.formation_edges]
     sensed = len(graph.edges)
     axes.add_collection(LineCollection(list(segments[:sensed]), colors=colour, linewidths=0.5, zorder=1))
     dashed = LineCollection(list(segments[sensed:]), colors=colour, linewidths=0.5, linestyles=[(0, (3, 2))], zorder=1)
     axes.add_collection(dashed)
+    pairs = {(int(observer), int(observed)) for observer, observed in graph.edges}
+    one_way = np.array([(observed, observer) not in pairs for observer, observed in graph.edges], dtype=bool)
+    heads = _heads(points[graph.edges[one_way]])
+    axes.add_collection(PolyCollection(list(heads), facecolors=colour, linewidths=0.0, zorder=1))
+
+
+def _heads(segments: Real) -> Real:
+    """(e, 3, 2) heads of arrows along segments (e, 2, 2), metres, a little beyond the middle, clear of the bodies."""
+    way = segments[:, 1] - segments[:, 0]
+    length = np.linalg.norm(way, axis=1, keepdims=True)
+    along = way / np.maximum(length, 1e-12)
+    across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    head = np.minimum(HEAD, 0.3 * length)
+    tip = segments[:, 0] + 0.62 * way
+    back = tip - head * along
+    return np.stack([tip, back + 0.3 * head * across, back - 0.3 * head * across], axis=1)
 
 
 def draw_robots(axes: Axes, experiment: Experiment, poses: Real, points: Real, hollow: bool = False) -> None:

@@ -59,19 +59,32 @@ class Run:
         """
         return pandas().DataFrame(series(self.experiment, self.trajectory, self.metrics))
 
-    def plot(self, name: str = "motion", at: Sequence[float] = ()) -> Figure:
+    def plot(
+        self,
+        name: str = "motion",
+        *,
+        at: Sequence[float] = (),
+        width: str | None = None,
+        font: str | None = None,
+        font_size: float | None = None,
+    ) -> Figure:
         """A figure of ``formation plot`` for one column of a paper: motion, graph, decay or separation.
 
         Args:
             name: of the figure.
             at: times, seconds, at which motion shows the robots; start and end, and of few phases each end, if none.
+            width: instead of a column's, ``7in`` or ``180mm``, say.
+            font: ``serif``, ``sans`` or a family's name.
+            font_size: points, of labels and titles.
 
         Raises:
-            InputError: there is none of that name, or a time is not one of the run.
+            InputError: there is none of that name, a time is not one of the run, or one cannot look so.
         """
         from scenarios.figures import draw  # loads matplotlib
+        from scenarios.figures.style import look_for, print_style
 
-        return draw(self.experiment, self.trajectory, self.metrics, name, at)
+        with print_style(look_for(width, font, font_size)):
+            return draw(self.experiment, self.trajectory, self.metrics, name, at)
 
     def animate(
         self,
