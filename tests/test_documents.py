@@ -23,6 +23,7 @@ from scenarios.definition.experiment import build, open_experiment
 from scenarios.definition.keys import keys
 from scenarios.definition.load import LIBRARY, ScenarioFile, validate
 from scenarios.simulation.loop import simulate
+from scenarios.storage.result_schema import SCHEMA_VERSION
 
 ROOT = Path(__file__).parents[1]
 GALLERY = "gallery.md"  # `formation run` of each scenario, which the baselines are of; tests/test_gallery.py
@@ -50,6 +51,7 @@ QUICK = (
     "formation show",
     "formation run RUN",
     "formation plot RUN",
+    "formation animate RUN",
     "formation table RUN",
     "formation export shape --safety none",
     "formation calibrate",
@@ -282,3 +284,12 @@ def test_the_workflow_of_the_page_is_yaml_whose_commands_exist() -> None:
     [check] = [step for step in steps if step.startswith("formation ")]
     name, *rest = check.split()[1:]
     assert {word for word in rest if word.startswith("--")} <= _options(commands.commands[name])
+
+
+def test_the_page_of_the_run_folder_names_its_schema_and_its_arrays(folder: Path) -> None:
+    page = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+    assert f"`schema_version` {SCHEMA_VERSION}," in page
+    with np.load(folder / "run" / "trajectory.npz") as arrays:
+        assert [name for name in arrays if f"`{name}`" not in page] == []
+    kinds = [re.sub(r"^figure-.*", "figure-*.png", path.name) for path in (folder / "run").iterdir()]
+    assert [kind for kind in kinds if f"`{kind}`" not in page and not kind.startswith("animation")] == []

@@ -48,3 +48,4 @@ LAWS: Mapping[str, type[Law]] = MappingProxyType(
         )
     }
 )
+"""The laws by the name that scenario files use."""

@@ -27,13 +27,19 @@ def list_command(as_json: bool) -> None:
 @options.scenario
 @options.seed("Seed of random starts.")
 @options.changes
-def show(scenario: str, seed: int, changes: tuple[str, ...]) -> None:
+@options.as_json
+def show(scenario: str, seed: int, changes: tuple[str, ...], as_json: bool) -> None:
     """Graph, angles, assumptions, predicted rates and end of SCENARIO (a name or a file)."""
     from scenarios.definition.experiment import open_experiment
     from scenarios.report.experiment import print_experiment
+    from scenarios.report.foretold import foretold
     from scenarios.terminal import new_console
 
-    print_experiment(new_console(), open_experiment(scenario, changes), seed)
+    experiment = open_experiment(scenario, changes)
+    if as_json:
+        click.echo(json.dumps(foretold(experiment, seed), indent=2))
+    else:
+        print_experiment(new_console(), experiment, seed)
 
 
 @click.command()

@@ -77,6 +77,7 @@ def sweep_command(
 @click.option("--out", default="runs/check", show_default=True, type=click.Path(path_type=Path), help="For misses.")
 @options.workers
 @click.option("--update", is_flag=True, help="Make the baselines anew instead, and show what changed.")
+@options.as_json
 def check(
     scenarios: tuple[str, ...],
     baselines: Path | None,
@@ -86,6 +87,7 @@ def check(
     out: Path,
     workers: int | None,
     update: bool,
+    as_json: bool,
 ) -> None:
     """Run scenarios again and compare them with their baselines; all that have one, if none is named.
 
@@ -95,9 +97,12 @@ def check(
     from scenarios.terminal import new_console
 
     if not update:
-        if not check_command(scenarios, baselines, portable, junit, markdown, out, workers, new_console()):
+        console, tell = new_console(stderr=as_json), click.echo if as_json else None
+        if not check_command(scenarios, baselines, portable, junit, markdown, out, workers, console, tell):
             raise SystemExit(MISSED)
         return
+    if as_json:
+        raise InputError("--json: not together with --update")
     if junit is not None or markdown is not None:
         raise InputError(f"--{'markdown' if junit is None else 'junit'}: not together with --update")
     update_command(scenarios, baselines, workers, new_console())

@@ -24,8 +24,8 @@ COLUMN = 3.4
 """Inches; the width of one column of a two-column journal."""
 
 DOTS_PER_INCH = 300
-SIZE = 7.5
-"""Points; of labels and titles."""
+SIZE, TICKS = 7.5, 7.0
+"""Points; of labels and titles, and of the numbers at the axes."""
 
 SMALL = 6.5
 """Points; the size of labels inside a figure. The text around it is half a point to a point larger."""
@@ -47,8 +47,8 @@ _STYLE: Any = {
     "font.size": SIZE,
     "axes.labelsize": SIZE,
     "axes.titlesize": SIZE,
-    "xtick.labelsize": 7.0,
-    "ytick.labelsize": 7.0,
+    "xtick.labelsize": TICKS,
+    "ytick.labelsize": TICKS,
     "legend.fontsize": SMALL,
     "legend.frameon": False,
     "legend.borderpad": 0.0,
@@ -104,7 +104,7 @@ class Look:
     size: float = SIZE
 
     @property
-    def style(self) -> dict[str, Any]:
+    def style(self) -> Any:
         """What matplotlib has to be told."""
         mathematics = {} if self.family == SERIF else {"mathtext.fontset": "stixsans"}
         return _STYLE | mathematics | {"font.family": list(dict.fromkeys((self.family, SERIF)))}
@@ -201,11 +201,11 @@ class PrintedFigure(Figure):
         self._lettered = True
         for axes in self.axes:
             for axis in (axes.xaxis, axes.yaxis):
-                axis.set_tick_params(labelsize=times * matplotlib.rcParams[f"{axis.axis_name}tick.labelsize"])
+                axis.set_tick_params(labelsize=times * TICKS)
         ticks = {text for axes in self.axes for text in (*axes.get_xticklabels(), *axes.get_yticklabels())}
         for text in self.findobj(Text):
             if text not in ticks:
-                text.set_fontsize(times * text.get_fontsize())
+                text.set_fontsize(times * float(text.get_fontsize()))
 
     def _repr_png_(self) -> bytes:
         return render(self, "png")

@@ -6,6 +6,7 @@ __all__ = [
     "closed_forms",
     "course",
     "experiment",
+    "foretold",
     "happenings",
     "numbers",
     "result",

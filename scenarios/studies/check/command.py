@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 from rich.console import Console
@@ -12,7 +13,7 @@ from scenarios.errors import InputError
 from scenarios.storage.files import prove_writable, write_text
 from scenarios.studies.check import baseline
 from scenarios.studies.check.repeat import check, open_baselines, write_folders
-from scenarios.studies.check.reports import junit, markdown
+from scenarios.studies.check.reports import as_json, junit, markdown
 from scenarios.studies.check.tables import print_check, print_folders, print_update
 from scenarios.studies.check.update import update
 from scenarios.terminal import progress_bar
@@ -31,8 +32,9 @@ def check_command(
     out: Path,
     workers: int | None,
     console: Console,
+    tell: Callable[[str], None] | None = None,
 ) -> bool:
-    """Compare, print, write reports and run folders.
+    """Compare, print, write reports and run folders; ``tell`` gets the comparison as JSON.
 
     Returns:
         Whether every run is as its baseline says.
@@ -57,6 +59,8 @@ def check_command(
     except InputError as error:
         failures.append(error)
     print_folders(console, outcome, folders)
+    if tell is not None:
+        tell(as_json(outcome, folders))
     for path, option in reports:
         text = junit(outcome, folders) if option == "--junit" else markdown(outcome, folders)
         try:
