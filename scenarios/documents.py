@@ -26,6 +26,21 @@ class Sheet(NamedTuple):
         """Which columns hold no text."""
         return [not any(isinstance(row[k], str) for row in self.rows) for k in range(len(self.columns))]
 
+    def with_columns(self, names: Sequence[str]) -> Sheet:
+        """The same with these columns alone, in this order.
+
+        Raises:
+            KeyError: there is none of a name.
+        """
+        at = {name: k for k, name in enumerate(self.columns)}
+        kept = [at[name] for name in names]
+        return Sheet(list(names), [[row[k] for k in kept] for row in self.rows])
+
+    def without_empty(self) -> Sheet:
+        """The same without columns in which nothing happened."""
+        full = [k for k in range(len(self.columns)) if not all(_missing(row[k]) for row in self.rows)]
+        return self.with_columns([self.columns[k] for k in full])
+
 
 def cell(value: float | None, form: str, unit: str = "") -> str:
     """A number in a table; a dash for what did not happen.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from scenarios.cli import options
-from scenarios.errors import InputError, plain
+from scenarios.errors import InputError, did_you_mean, plain
 
 if TYPE_CHECKING:
     from scenarios.documents import Sheet
@@ -106,11 +106,13 @@ def animate(
     show_default=True,
 )
 @click.option("--series", is_flag=True, help="Of one run: a row per control period, units in the names.")
+@click.option("--columns", metavar="NAME,...", help="Only these, in this order.  [default: all]")
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), help="Write to this file instead of printing.")
-def table(folders: tuple[Path, ...], form: str, series: bool, out: Path | None) -> None:
+def table(folders: tuple[Path, ...], form: str, series: bool, columns: str | None, out: Path | None) -> None:
     """The numbers of a run, of two runs with their differences, or of a sweep, as a table.
 
-    Markdown and LaTeX have four digits; CSV and Parquet, which needs the extra `notebook`, have all.
+    Markdown and LaTeX have four digits, and no column that is empty; CSV and Parquet, which needs the extra `notebook`,
+    have all.
     """
     from scenarios import documents
     from scenarios.storage.files import write_whole
@@ -118,6 +120,10 @@ def table(folders: tuple[Path, ...], form: str, series: bool, out: Path | None) 
     if form == "parquet" and out is None:
         raise InputError("--format parquet: needs --out, a terminal cannot show it")
     sheet = _sheet(folders, series)
+    if columns is not None:
+        sheet = sheet.with_columns(_columns(columns, sheet))
+    elif form in ("markdown", "latex"):
+        sheet = sheet.without_empty()
     if form == "parquet":
         from scenarios.interactive.frames import parquet
 
@@ -128,6 +134,20 @@ def table(folders: tuple[Path, ...], form: str, series: bool, out: Path | None) 
         click.echo(content.decode(), nl=False)
     else:
         write_whole(out, content, "--out")
+
+
+def _columns(text: str, sheet: Sheet) -> list[str]:
+    """The names of columns, in a list with commas; names of angles have commas of their own."""
+    names: list[str] = []
+    rest = text
+    while rest:
+        found = [name for name in sheet.columns if rest == name or rest.startswith(f"{name},")]
+        if not found:
+            wrong = rest.split(",")[0]
+            raise InputError(f"--columns: no column {wrong[:40]!r}, {did_you_mean(wrong, sheet.columns)}")
+        names.append(max(found, key=len))
+        rest = rest[len(names[-1]) + 1 :]
+    return names
 
 
 def _sheet(folders: tuple[Path, ...], series: bool) -> Sheet:

@@ -116,3 +116,23 @@ def test_whatever_stands_in_a_latex_table_it_has_its_columns_and_no_character_of
         name, value = bare.split(" & ")
         assert not set(name) & set("&%$#_{}~^\\")
         assert re.fullmatch(r"--|\$-?[\d.]+( \\times 10\^\{-?\d+\})?\$", value)
+
+
+def test_a_table_for_a_paper_has_the_columns_that_are_named_and_none_that_is_empty(cli: Cli, runs: Path) -> None:
+    sweep, chosen = str(runs / "sweep"), "plant.name,converged,angle_error_sum_rad.q50"
+    code, out, _ = cli("table", sweep, "--format", "csv", "--columns", chosen)
+    whole = rows_of(cli("table", sweep, "--format", "csv")[1])
+    assert code == 0
+    assert rows_of(out) == [{name: row[name] for name in chosen.split(",")} for row in whole]
+    empty = {name for name in whole[0] if not any(row[name] for row in whole)}
+    assert "min_clearance_m.q50" in empty
+    written = set(cli("table", sweep)[1].splitlines()[0].strip("| ").split(" | "))
+    assert written == set(whole[0]) - empty
+
+
+def test_a_column_of_an_angle_is_named_with_its_comma_and_a_misspelt_one_is_told(cli: Cli, runs: Path) -> None:
+    arguments = ("table", str(runs / "saturated"), "--series", "--format", "csv", "--columns")
+    code, out, _ = cli(*arguments, "t_s,alpha(1;2,3).error_rad,x_1_m")
+    assert code == 0
+    assert out.splitlines()[0] == 't_s,"alpha(1;2,3).error_rad",x_1_m'
+    assert cli(*arguments, "x_1_n")[::2] == (2, "formation: --columns: no column 'x_1_n', did you mean 'x_1_m'?\n")
