@@ -89,7 +89,8 @@ dist: ## build wheel and source archive, check them, run a scenario with each in
 		$(DIST)/user/bin/python -m pip install --quiet --disable-pip-version-check "$$archive" && \
 		(cd $(DIST) && user/bin/formation --version && user/bin/formation list && \
 			{ user/bin/formation run shape --duration 2 --out user/run || test $$? -eq 1; } && \
-			test -f user/run/result.json) || exit 1; \
+			test -f user/run/result.json && user/bin/formation check fastest --out user/check && \
+			_FORMATION_COMPLETE=bash_source user/bin/formation | grep -q _formation_completion) || exit 1; \
 	done
 
 fuzz: $(STAMP) ## 6,500 mutants of scenarios, run folders and options (about 15 minutes)
