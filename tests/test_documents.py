@@ -103,6 +103,10 @@ def blocks(document: Path) -> Iterator[Block]:
             yield Block(document.name, "", re.sub(r"^ {4}", "", found["indented"], flags=re.MULTILINE))
 
 
+def _of(page: str, kind: str) -> list[str]:
+    return [block.text for block in BLOCKS if (block.page, block.kind) == (page, kind)]
+
+
 BLOCKS = [block for document in DOCUMENTS for block in blocks(document)]
 IS_COMMAND = re.compile(r"""(?:[A-Z_]+=(?:"[^"]*"|\S+) )*(?:\.venv/bin/)?(?:formation|make|pip|dask|pytest) """)
 LINES = list(
@@ -132,10 +136,12 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
     where = tmp_path_factory.mktemp("reader")
     run("shape", plant="saturated", duration=3.0).save(where / "run")
-    [law] = [block.text for block in BLOCKS if (block.page, block.kind) == ("own-law.md", "python")]
+    [law] = _of("own-law.md", "python")
     (where / "my_law.py").write_text(law, encoding="utf-8")
-    triangle, table = [block.text for block in BLOCKS if (block.page, block.kind) == ("README.md", "toml")]
+    triangle, table = _of("README.md", "toml")
     (where / "mine.toml").write_text(f"{triangle}\n{table}", encoding="utf-8")
+    for name, block in zip(("eight.toml", "laws.toml"), _of("afternoon.md", "toml"), strict=True):
+        (where / name).write_text(block, encoding="utf-8")
     (where / "consensus.py").write_text(SCRIPT, encoding="utf-8")
     if EVERYTHING:
         rng = np.random.default_rng(1)
@@ -233,7 +239,7 @@ def test_a_piece_of_a_scenario_is_one_that_a_scenario_may_have(block: Block, fol
     text = f"agents = [{block.text}]" if block.text.startswith("{") else block.text
     data: dict[str, Any] = tomllib.loads(text)
     if data.get("law", {}).get("name") == "own":
-        [triangle, _] = [block.text for block in BLOCKS if (block.page, block.kind) == ("README.md", "toml")]
+        [triangle, _] = _of("README.md", "toml")
         (folder / "piece.toml").write_text(f"{triangle}\n{block.text}", encoding="utf-8")
         open_experiment(str(folder / "piece.toml"))
         return
@@ -260,7 +266,7 @@ def test_the_frame_of_a_sweep_is_read_as_the_page_says(
     vary = ("--vary", "robot.tyre_friction=0.2,0.8", "--vary", "safety.filter=none,decentralised")
     arguments = ("sweep", "shape", "--seeds", "0:2", "--plant", "saturated", "--duration", "2", "--workers", "1")
     assert cli(*arguments, *vary, "--out", ".sweep")[0] == 0
-    [block] = [block.text for block in BLOCKS if (block.page, block.kind) == ("sweep.md", "python")]
+    [block] = _of("sweep.md", "python")
     monkeypatch.chdir(folder / ".sweep")
     names: dict[str, Any] = {}
     exec(block, names)
