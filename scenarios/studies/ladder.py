@@ -24,7 +24,7 @@ from scenarios.measures.metrics import measure, settling_time
 from scenarios.simulation.loop import simulate
 from scenarios.simulation.trajectory import Trajectory
 from scenarios.storage.files import write_whole
-from scenarios.studies.sweep.study import batch_size
+from scenarios.studies.sweep.study import together
 from scenarios.studies.sweep.summary import Share
 from scenarios.terminal import new_table, print_table
 from scenarios.work.protocol import Spread
@@ -125,7 +125,7 @@ def climb(
     for rung, added, _ in RUNGS:
         experiment = open_experiment(source, (*changes, *added))
         experiment.initial_points(seeds[0])
-        step = batch_size(experiment)
+        step = together(experiment)
         batches += [Batch(rung, experiment.file, tuple(seeds[i : i + step])) for i in range(0, len(seeds), step)]
     rows: list[Row] = []
     errors: dict[str, list[Real]] = {rung: [] for rung, _, _ in RUNGS}

@@ -12,7 +12,7 @@ from robots.testbed import COLLISION_DISTANCE, OBSTACLE_DISTANCE, collision_cent
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.metrics import Outcome
 from scenarios.simulation.compiled.runs import Chunk
-from scenarios.simulation.schedule import times
+from scenarios.simulation.schedule import schedule, times
 
 Real = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -43,7 +43,7 @@ class Watch:
     """
 
     def __init__(self, experiment: Experiment, state: Real) -> None:
-        from scenarios.measures.online.watching import Angles
+        from scenarios.measures.online.watching import Angles, Ground, Seen
 
         runs = state.shape[2]
         targets = experiment.target_angles
@@ -56,23 +56,19 @@ class Watch:
             float(experiment.goal),
             DOUBT * len(targets),
         )
-        self._last_above = np.full(runs, -1, dtype=np.int64)
-        self._least = np.full(runs, np.inf)
-        self._doubtful, self._off_floor, self._fast, self._on_obstacle = np.zeros((4, runs), dtype=bool)
-        self._floor = np.array([*experiment.arena.x, *experiment.arena.y])
+        self._ground = Ground(np.array([*experiment.arena.x, *experiment.arena.y]), _way(experiment))
+        doubtful, off_floor, self._on_obstacle = np.zeros((3, runs), dtype=bool)
+        self._seen = Seen(np.full(runs, -1, dtype=np.int64), doubtful, np.full(runs, np.inf), off_floor, np.zeros(runs))
         self._state = state
         self.take(Chunk(0, 0, state[None], np.empty((0, *state.shape[1:], 0), dtype=np.int32)))
 
     def take(self, chunk: Chunk) -> None:
         """Look at the states of a chunk."""
-        from scenarios.measures.online import watching
+        from scenarios.measures.online.watching import look
 
         rows, experiment = chunk.rows, self._experiment
-        watching.last_above(rows, chunk.first, self._angles, self._last_above, self._doubtful)
-        watching.beyond_floor(rows, self._floor, self._off_floor)
-        watching.beyond_wheels(rows, float(fastest_allowed(experiment.robot.drive)), self._fast)
         centres = rows if _ahead_as_checked(experiment) else self._centred(rows)
-        watching.nearest(centres, self._least)
+        look(rows, centres, chunk.first, self._angles, self._ground, self._seen)
         if experiment.arena.obstacles:
             from robots.worlds.lanes import PX, PY
 
@@ -91,29 +87,27 @@ class Watch:
 
     def achieved(self) -> list[Achieved | None]:
         """What each run achieved; None where its states do not tell, or are not finite: its trajectory has to."""
-        from robots.worlds.lanes import PX, PY, THETA, X
+        from robots.worlds.lanes import PX, X
 
-        state = self._state
-        poses = np.ascontiguousarray(state[X : THETA + 1].T)
-        points = np.ascontiguousarray(state[PX : PY + 1].T)
-        whole = np.isfinite(poses.sum(axis=(1, 2))) & ~self._doubtful
-        return [
-            self._of(m, self._error_sum(points[m]), self._error_sum(poses[m, :, :2])) if whole[m] else None
-            for m in range(state.shape[2])
-        ]
+        whole = np.isfinite(self._state[: PX + 2]).all(axis=(0, 1)) & ~self._seen.doubtful
+        errors, axle_errors = self._error_sums(PX), self._error_sums(X)
+        return [self._of(m, float(errors[m]), float(axle_errors[m])) if whole[m] else None for m in range(len(whole))]
 
-    def _error_sum(self, places: Real) -> float:
-        """Of one run: numpy rounds an angle by its place among others, and a row is to come from its seed alone."""
-        errors = self._experiment.angles.errors(np.ascontiguousarray(places), self._experiment.target_angles)
-        return float(np.abs(errors).sum())
+    def _error_sums(self, x: int) -> Real:
+        """(L,) of the states as they are, at the points whose x is the field ``x``, the next one their y."""
+        from scenarios.measures.online.watching import error_sums
+
+        found = np.empty(self._state.shape[2])
+        error_sums(self._state[x], self._state[x + 1], self._angles, found)
+        return found
 
     def _of(self, m: int, error_sum: float, axle_error_sum: float) -> Achieved:
-        experiment, last, least = self._experiment, int(self._last_above[m]), float(self._least[m])
+        experiment, last, least = self._experiment, int(self._seen.last_above[m]), float(self._seen.least[m])
         kinds = {
-            "floor": self._off_floor[m],
+            "floor": self._seen.off_floor[m],
             "collision": least <= COLLISION_DISTANCE,
             "obstacle": self._on_obstacle[m],
-            "actuator": self._fast[m],
+            "actuator": self._seen.fastest[m] > fastest_allowed(experiment.robot.drive),
         }
         violations = tuple(kind for kind, holds in kinds.items() if holds)
         accepted = not any(kind != "actuator" for kind in violations)
@@ -129,3 +123,14 @@ class Watch:
 def _ahead_as_checked(experiment: Experiment) -> bool:
     """Whether the testbed checks the very points that the law steers: robots whose l is the testbed's."""
     return experiment.plant != "single_integrator" and experiment.nid.projection_distance == COLLISION_CENTRE
+
+
+def _way(experiment: Experiment) -> float:
+    """Metres that axle, projected point and the point that the testbed checks go in a period, for each rad/s.
+
+    A point a ahead of the axle goes at most |v| + a |omega|, and with v = r (w_r + w_l) / 2, omega = r (w_r - w_l) / b
+    that is r max(1, 2 a / b) max(|w_l|, |w_r|) at most.
+    """
+    drive, ahead = experiment.robot.drive, max(float(experiment.nid.projection_distance), COLLISION_CENTRE)
+    period = max(part.period for part in schedule(experiment))
+    return float(drive.wheel_radius * max(1.0, 2.0 * ahead / drive.base_length) * period)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from scenarios.simulation.compiled.ability import unable
 from scenarios.simulation.compiled.runs import Runs
 from scenarios.simulation.loop import simulate
 from scenarios.simulation.trajectory import Trajectory
-from scenarios.studies.sweep.study import Batch
+from scenarios.studies.sweep.study import Batch, together
 
 RUN_COLUMNS = 3
 """The first columns of a row, which tell the run; varied keys come behind them."""
@@ -79,14 +80,15 @@ def run_batch(batch: Batch) -> list[Row]:
     except Exception as error:
         return [_failed(batch, seed, error) for seed in batch.seeds]
     if unable(experiment) is None:
-        watched = _watched(experiment, batch.seeds)
+        step = together(experiment)
+        parts = (_watched(experiment, batch.seeds[k : k + step]) for k in range(0, len(batch.seeds), step))
         return [
             _alone(batch, experiment, seed) if achieved is None else _told(experiment, seed, achieved)
-            for seed, achieved in zip(batch.seeds, watched, strict=True)
+            for seed, achieved in zip(batch.seeds, chain.from_iterable(parts), strict=True)
         ]
-    together = _together(experiment, batch.seeds) if len(batch.seeds) > 1 else None
+    states = _together(experiment, batch.seeds) if len(batch.seeds) > 1 else None
     return [
-        _alone(batch, experiment, seed, None if together is None else together.run(index))
+        _alone(batch, experiment, seed, None if states is None else states.run(index))
         for index, seed in enumerate(batch.seeds)
     ]
 
@@ -130,10 +132,10 @@ def _told(experiment: Experiment, seed: int, achieved: Achieved) -> Row:
 def _together(experiment: Experiment, seeds: Sequence[int]) -> Trajectory | None:
     """All runs as one array; None where one of them diverged or failed, which ended it for all."""
     try:
-        together = simulate(experiment, seeds)
+        states = simulate(experiment, seeds)
     except Exception:  # made one by one, the runs tell which of them it was
         return None
-    return together if np.isfinite(together.poses[-1]).all() else None
+    return states if np.isfinite(states.poses[-1]).all() else None
 
 
 def _row(experiment: Experiment, seed: int, trajectory: Trajectory) -> Row:

@@ -34,7 +34,13 @@ MOST_TOGETHER = 64
 """Robots of a run up to which compiled runs advance side by side; larger ones search for neighbours, each by itself."""
 
 MOST_BATCHED = 100
-"""Runs in one batch; more are no faster and make progress coarse."""
+"""Runs whose states are kept in one batch; more are no faster and make progress coarse."""
+
+MOST_WATCHED = 1000
+"""Runs in one batch of those that are measured on their way, some at a time side by side."""
+
+WATCHED_STATES = 8_000_000
+"""Robots times control periods in such a batch: a fraction of a second."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +52,7 @@ class Combination:
         values: the values alone, as they were written.
         file: the scenario with all changes: runs need no file.
         safety: the filter of its runs.
-        batch_size: runs that are made together.
+        batch_size: runs that are one task.
         duration: seconds to run, where it is not the scenario's own.
         compiled: whether whole periods of many runs are one compiled call.
     """
@@ -62,7 +68,7 @@ class Combination:
 
 @dataclass(frozen=True)
 class Batch:
-    """Runs that are made together."""
+    """Runs that are one task."""
 
     combination: Combination
     seeds: tuple[int, ...]
@@ -165,10 +171,19 @@ def open_study(
 
 
 def batch_size(experiment: Experiment) -> int:
-    """Runs that are made together: many on a plant without contact, one on pymunk; their states are kept or watched."""
+    """Runs that are one task."""
+    side_by_side = together(experiment)
+    if unable(experiment) is not None:
+        return side_by_side
+    passes = WATCHED_STATES // (side_by_side * experiment.n * count_periods(experiment))
+    return min(MOST_WATCHED, side_by_side * max(1, passes))
+
+
+def together(experiment: Experiment) -> int:
+    """Runs that advance together: many on a plant without contact, as far as memory and cache go, one on pymunk."""
     if experiment.plant == SINGLE:
         return 1
     if unable(experiment) is None:
-        return max(1, min(MOST_BATCHED, LANES // experiment.n)) if experiment.n <= MOST_TOGETHER else 1
+        return max(1, LANES // experiment.n) if experiment.n <= MOST_TOGETHER else 1
     states = experiment.n * count_periods(experiment)
     return max(1, min(MOST_BATCHED, BATCH_STATES // states))

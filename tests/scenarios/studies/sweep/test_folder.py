@@ -43,7 +43,8 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Study, dict[str, by
     """A study whose batches hold two runs, and the files of a sweep of it that nothing stopped."""
     folder = tmp_path_factory.mktemp("whole")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(study, "MOST_BATCHED", 2)
+        for name in ("MOST_BATCHED", "MOST_WATCHED"):
+            patch.setattr(study, name, 2)
         made = study_of("4,0:4", vary=("plant.name=saturated,pymunk",))
     run(made, folder)
     return made, files(folder)
@@ -186,7 +187,8 @@ def test_a_second_writer_is_refused_and_a_killed_one_leaves_no_lock_behind(
 
 
 def test_a_run_that_raises_is_a_row_and_the_others_go_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(study, "MOST_BATCHED", 2)
+    for name in ("MOST_BATCHED", "MOST_WATCHED"):
+        monkeypatch.setattr(study, name, 2)
     simulate, runs = row.simulate, row.Runs
 
     def simulate_or_raise(experiment: Any, seed: Any) -> Any:

@@ -23,7 +23,7 @@ from scenarios.simulation.trajectory import Trajectory
 from scenarios.studies.sweep.folder import PARTIAL, ROWS, SUMMARY
 from scenarios.studies.sweep.row import Row, run_batch
 from scenarios.studies.sweep.seeds import parse_seeds
-from scenarios.studies.sweep.study import MOST_BATCHED, Batch, batch_size, open_study
+from scenarios.studies.sweep.study import MOST_WATCHED, Batch, batch_size, open_study
 from scenarios.studies.sweep.summary import QUANTILES, Share, Summary, summarise
 from scenarios.studies.sweep.sweep import sweep
 from scenarios.studies.sweep.variations import parse_variations
@@ -96,7 +96,8 @@ def test_rows_of_a_goal_that_asks_for_acceptance_count_a_rejected_run_as_missed(
 
 @pytest.mark.parametrize("plant", ["saturated", "pymunk"])
 def test_rows_do_not_depend_on_the_number_of_processes(plant: str, tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setattr(scenarios.studies.sweep.study, "MOST_BATCHED", 2)
+    for name in ("MOST_BATCHED", "MOST_WATCHED"):
+        monkeypatch.setattr(scenarios.studies.sweep.study, name, 2)
     changes = ("duration_s=0.5", f"plant.name={plant}")
     for workers in (1, 2):
         sweep_shape(changes, "0:5", tmp_path / str(workers), workers)
@@ -140,7 +141,8 @@ def test_a_sweep_that_is_stopped_keeps_every_finished_row_and_does_not_look_whol
 
 
 def test_progress_counts_runs_and_the_summary_is_of_the_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(scenarios.studies.sweep.study, "MOST_BATCHED", 2)
+    for name in ("MOST_BATCHED", "MOST_WATCHED"):
+        monkeypatch.setattr(scenarios.studies.sweep.study, name, 2)
     seen: list[tuple[int, int]] = []
     changes = (*SHORT, "plant.name=unicycle")
     [summary] = sweep_shape(changes, "0:5", tmp_path, on_progress=lambda *counts: seen.append(counts))
@@ -153,7 +155,7 @@ def test_progress_counts_runs_and_the_summary_is_of_the_rows(tmp_path: Path, mon
 
 def test_batches_fit_in_memory_and_contact_has_none(shape: Experiment) -> None:
     assert batch_size(shape) == 1
-    assert batch_size(open_experiment("fastest", ("plant.name=saturated",))) == MOST_BATCHED
+    assert batch_size(open_experiment("fastest", ("plant.name=saturated",))) == MOST_WATCHED
     assert batch_size(open_experiment("random-50", ("plant.name=saturated", "sensor.position_noise_m=0.01"))) < 5
 
 
