@@ -14,7 +14,7 @@ from scenarios.studies.sweep.seeds import Seeds, parse_seeds
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-TEXTS = ("scenario", "plant", "outcome", "violations", "mean_errors_rad", "rms_errors_rad", "message")
+TEXTS = ("scenario", "plant", "outcome", "violations", "mean_errors_rad", "rms_errors_rad", "cause", "message")
 """Columns of a sweep that may be empty without a number missing."""
 
 

@@ -3,4 +3,4 @@
 Nothing here makes a single run worth looking at: that is :mod:`scenarios.one_run`.
 """
 
-__all__ = ["folder", "row", "seeds", "sheet", "study", "summary", "sweep", "table", "variations"]
+__all__ = ["cause", "folder", "quantiles", "row", "seeds", "sheet", "study", "summary", "sweep", "table", "variations"]

@@ -20,8 +20,11 @@ from scenarios.storage.scratch import beside
 from scenarios.studies.sweep.row import Row, columns
 from scenarios.studies.sweep.study import Batch, Study
 
-ROWS, PARTIAL, SUMMARY = "rows.csv", "rows.partial.csv", "summary.json"
-"""Files of a sweep; the rows are partial until the last run is done."""
+ROWS, PARTIAL = "rows.csv", "rows.partial.csv"
+"""The rows, which are partial until the last run is done."""
+
+SUMMARY, SUMMARY_SO_FAR = "summary.json", "summary.partial.json"
+"""What the rows say together, and what those do that are there while others are still to come."""
 
 STUDY = "study.json"
 """What the rows are of."""
@@ -63,7 +66,7 @@ def begin(folder: Path, study: Study, restart: bool) -> int:
     Raises:
         InputError: another study is there, or files that no sweep wrote.
     """
-    older = [name for name in (ROWS, PARTIAL, SUMMARY) if (folder / name).exists()]
+    older = [name for name in (ROWS, PARTIAL, SUMMARY, SUMMARY_SO_FAR) if (folder / name).exists()]
     if (folder / STUDY).exists():
         if not restart:
             _require_same(folder, study)
@@ -103,15 +106,29 @@ def finish(folder: Path) -> None:
     (folder / PARTIAL).replace(folder / ROWS)
 
 
-def read_rows(folder: Path) -> Generator[Mapping[str, str], None, None]:
-    """The rows of a finished sweep, cells by column, one at a time."""
-    with (folder / ROWS).open(encoding="utf-8", newline="") as file:
+def read_rows(folder: Path) -> Generator[Row, None, None]:
+    """The rows of a sweep that are there, one at a time.
+
+    Raises:
+        ValueError, KeyError, TypeError: the file is damaged.
+    """
+    for cells in read_cells(folder):
+        yield Row.read(cells)
+
+
+def read_cells(folder: Path) -> Generator[Mapping[str, str], None, None]:
+    """The same as cells by column, those of varied keys too."""
+    finished = folder / ROWS
+    with (finished if finished.exists() else folder / PARTIAL).open(encoding="utf-8", newline="") as file:
         yield from csv.DictReader(file)
 
 
 def write_summary(folder: Path, content: Mapping[str, Any]) -> None:
     """Write what the rows say together, whole or not at all."""
-    write_whole(folder / SUMMARY, (json.dumps(content, indent=2, allow_nan=False) + "\n").encode())
+    name = SUMMARY if (folder / ROWS).exists() else SUMMARY_SO_FAR
+    write_whole(folder / name, (json.dumps(content, indent=2, allow_nan=False) + "\n").encode())
+    if name == SUMMARY:
+        (folder / SUMMARY_SO_FAR).unlink(missing_ok=True)
 
 
 def _require_same(folder: Path, study: Study) -> None:
@@ -146,12 +163,13 @@ def _header(study: Study) -> bytes:
 def _kept(path: Path, study: Study) -> tuple[int, int]:
     """The runs in the longest beginning of a file that holds whole batches of the study: number, and end in bytes."""
     header, done = _header(study), 0
+    names = header.decode().rstrip("\n").split(",")
     with path.open("rb") as file:
         if file.readline(LONGEST_LINE) != header:
             return 0, 0
         end = len(header)
         for batch in study.batches():
-            size = _read_batch(file, batch, header.count(b",") + 1)
+            size = _read_batch(file, batch, names)
             if size is None:
                 break
             end += size
@@ -159,17 +177,18 @@ def _kept(path: Path, study: Study) -> tuple[int, int]:
     return done, end
 
 
-def _read_batch(file: BinaryIO, batch: Batch, width: int) -> int | None:
+def _read_batch(file: BinaryIO, batch: Batch, names: Sequence[str]) -> int | None:
     """The bytes of the batch's rows; None where they are not the next ones."""
     known, size = [batch.combination.file.name, batch.combination.file.scenario.plant.name], 0
     for seed in batch.seeds:
         line = file.readline(LONGEST_LINE)
         try:
             [cells] = csv.reader([line.decode("utf-8")], strict=True)
-        except (ValueError, csv.Error):
+            Row.read(dict(zip(names, cells, strict=True)))
+        except (ValueError, KeyError, csv.Error):
             return None
         told = [*known, str(seed), *batch.combination.values]
-        if not line.endswith(b"\n") or len(cells) != width or cells[: len(told)] != told:
+        if not line.endswith(b"\n") or cells[: len(told)] != told:
             return None
         size += len(line)
     return size

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
-from itertools import chain
-from typing import Any
+from typing import Any, get_type_hints
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from scenarios.simulation.compiled.ability import unable
 from scenarios.simulation.compiled.runs import Runs
 from scenarios.simulation.loop import simulate
 from scenarios.simulation.trajectory import Trajectory
+from scenarios.studies.sweep.cause import ERROR, Ends, cause_of
 from scenarios.studies.sweep.study import Batch, together
 
 RUN_COLUMNS = 3
@@ -54,7 +54,17 @@ class Row:
     rms_errors_rad: str = ""
     min_clearance_m: float | None = None
     min_hull_clearance_m: float | None = None
+    cause: str = ""
     message: str = ""
+
+    @classmethod
+    def read(cls, cells: Mapping[str, str]) -> Row:
+        """The row that stands in ``rows.csv`` with these cells.
+
+        Raises:
+            ValueError, KeyError: they are none.
+        """
+        return cls(**{name: kind(cells[name]) for name, kind in _READ.items()})
 
     def cells(self, varied: Sequence[str]) -> list[Any]:
         """The row as it is written."""
@@ -62,6 +72,18 @@ class Row:
 
 
 NAMES = tuple(field.name for field in fields(Row))
+
+
+def _number(cell: str) -> float | None:
+    return float(cell) if cell else None
+
+
+def _truth(cell: str) -> bool | None:
+    return {"": None, "True": True, "False": False}[cell]
+
+
+_READERS: dict[Any, Callable[[str], Any]] = {str: str, int: int, float | None: _number, bool | None: _truth}
+_READ = {name: _READERS[kind] for name, kind in get_type_hints(Row).items()}
 
 
 def columns(varied: Sequence[str]) -> list[str]:
@@ -81,11 +103,8 @@ def run_batch(batch: Batch) -> list[Row]:
         return [_failed(batch, seed, error) for seed in batch.seeds]
     if unable(experiment) is None:
         step = together(experiment)
-        parts = (_watched(experiment, batch.seeds[k : k + step]) for k in range(0, len(batch.seeds), step))
-        return [
-            _alone(batch, experiment, seed) if achieved is None else _told(experiment, seed, achieved)
-            for seed, achieved in zip(batch.seeds, chain.from_iterable(parts), strict=True)
-        ]
+        parts = [batch.seeds[first : first + step] for first in range(0, len(batch.seeds), step)]
+        return [row for seeds in parts for row in _watched(batch, experiment, seeds)]
     states = _together(experiment, batch.seeds) if len(batch.seeds) > 1 else None
     return [
         _alone(batch, experiment, seed, None if states is None else states.run(index))
@@ -101,19 +120,30 @@ def _alone(batch: Batch, experiment: Experiment, seed: int, trajectory: Trajecto
         return _failed(batch, seed, error)
 
 
-def _watched(experiment: Experiment, seeds: Sequence[int]) -> Sequence[Achieved | None]:
-    """What compiled runs achieve, measured on their way; None for those that have to be made by themselves."""
+def _watched(batch: Batch, experiment: Experiment, seeds: Sequence[int]) -> Iterator[Row]:
+    """The rows of compiled runs, measured on their way; those whose states do not tell are made by themselves."""
+    from robots.worlds.lanes import PX, PY, STUCK, UX, UY
+
     try:
         runs = Runs(experiment, seeds)
+        starts = runs.state[PX : PY + 1].T.copy()
         watch = Watch(experiment, runs.state)
         for chunk in runs.advance(PERIODS):
             watch.take(chunk)
-        return watch.achieved()
+        achieved = watch.achieved()
     except Exception:  # made one by one, the runs tell which of them it was
-        return [None] * len(seeds)
+        yield from (_alone(batch, experiment, seed) for seed in seeds)
+        return
+    for m, (seed, found) in enumerate(zip(seeds, achieved, strict=True)):
+        if found is None:
+            yield _alone(batch, experiment, seed)
+        else:
+            yield _told(
+                experiment, seed, found, Ends(starts[m], runs.state[STUCK, :, m], runs.state[UX : UY + 1, :, m].T)
+            )
 
 
-def _told(experiment: Experiment, seed: int, achieved: Achieved) -> Row:
+def _told(experiment: Experiment, seed: int, achieved: Achieved, ends: Ends) -> Row:
     """The row of a run that was watched."""
     return Row(
         scenario=experiment.file.name,
@@ -126,6 +156,7 @@ def _told(experiment: Experiment, seed: int, achieved: Achieved) -> Row:
         min_separation_m=_finite(achieved.separation),
         accepted=achieved.accepted,
         violations=" ".join(achieved.violations),
+        cause=cause_of(experiment, achieved.outcome, achieved.violations, ends),
     )
 
 
@@ -140,6 +171,7 @@ def _together(experiment: Experiment, seeds: Sequence[int]) -> Trajectory | None
 
 def _row(experiment: Experiment, seed: int, trajectory: Trajectory) -> Row:
     metrics = measure(experiment, trajectory)
+    violations = [violation.kind for violation in metrics.verdict.violations]
     return Row(
         scenario=experiment.file.name,
         plant=experiment.plant,
@@ -150,7 +182,8 @@ def _row(experiment: Experiment, seed: int, trajectory: Trajectory) -> Row:
         settling_time_s=metrics.settling_time,
         min_separation_m=_finite(metrics.separation.distance.min()),
         accepted=metrics.verdict.accepted,
-        violations=" ".join(violation.kind for violation in metrics.verdict.violations),
+        violations=" ".join(violations),
+        cause=cause_of(experiment, metrics.outcome, violations, Ends.of(trajectory)),
         **({} if metrics.window is None else _over_window(metrics.window)),
         **({} if metrics.clearance is None else _clearances(metrics.clearance)),
     )
@@ -181,7 +214,7 @@ def _failed(batch: Batch, seed: int, error: Exception) -> Row:
     said = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
     line = "".join(c if c.isprintable() else "?" for c in " ".join(said.split()))
     file = batch.combination.file
-    return Row(file.name, file.scenario.plant.name, seed, FAILED, message=line[:LONGEST_MESSAGE])
+    return Row(file.name, file.scenario.plant.name, seed, FAILED, cause=ERROR, message=line[:LONGEST_MESSAGE])
 
 
 def _finite(value: float) -> float | None:

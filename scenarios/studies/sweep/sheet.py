@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -13,9 +14,9 @@ from numpy.typing import NDArray
 
 from scenarios.documents import Sheet, Value
 from scenarios.errors import InputError
-from scenarios.studies.sweep.folder import ROWS, read_rows
-from scenarios.studies.sweep.row import RUN_COLUMNS, columns
-from scenarios.studies.sweep.summary import QUANTILES, QUANTITIES, summarise
+from scenarios.studies.sweep.folder import ROWS, read_cells
+from scenarios.studies.sweep.row import RUN_COLUMNS, Row, columns
+from scenarios.studies.sweep.summary import QUANTILES, QUANTITIES, Share, summarise
 
 SHOWN = (0.05, 0.5, 0.95)
 """Quantiles that have a column."""
@@ -33,7 +34,7 @@ def sheet(folder: Path) -> Sheet:
         InputError: ``rows.csv`` is not a sweep's.
     """
     with _told(folder):
-        return _sheet(read_rows(folder))
+        return _sheet(read_cells(folder))
 
 
 @dataclass(frozen=True)
@@ -59,21 +60,29 @@ def groups(folder: Path) -> Groups:
     Raises:
         InputError: ``rows.csv`` is not a sweep's.
     """
+    labels: list[str] = []
+    varied: list[str] = []
+    shares: list[tuple[float, float, float]] = []
+    values: dict[str, list[NDArray[np.float64]]] = {column: [] for column in QUANTITIES}
     with _told(folder):
-        gathered = [
-            list(group) for _, group in groupby(read_rows(folder), key=lambda r: tuple(_combination(r).values()))
-        ]
-        varied = [name for name in _combination(gathered[0][0]) if name not in ("scenario", "plant")]
-        shares = [summarise(iter(own), len(own)).converged for own in gathered]
-        return Groups(
-            ", ".join(varied),
-            [", ".join(own[0][name] for name in varied) for own in gathered],
-            np.array([(share.share, share.low, share.high) for share in shares]),
-            {
-                column: [np.array([float(row[column]) for row in own if row[column]]) for own in gathered]
-                for column in QUANTITIES
-            },
-        )
+        for combination, group in groupby(read_cells(folder), key=lambda row: tuple(_combination(row).items())):
+            known = {name: value for name, value in combination if name not in ("scenario", "plant")}
+            varied = list(known)
+            labels.append(", ".join(known.values()))
+            numbers, runs, converged = {column: array("d") for column in QUANTITIES}, 0, 0
+            for cells in group:
+                runs += 1
+                converged += cells["outcome"] == "converged"
+                for column, found in numbers.items():
+                    if cells[column]:
+                        found.append(float(cells[column]))
+            share = Share.of(converged, runs)
+            shares.append((share.share, share.low, share.high))
+            for column, found in numbers.items():
+                values[column].append(np.array(found))
+        if not labels:
+            raise ValueError("no rows")
+    return Groups(", ".join(varied), labels, np.array(shares), values)
 
 
 @contextmanager
@@ -88,10 +97,9 @@ def _told(folder: Path) -> Iterator[None]:
 def _sheet(rows: Iterator[Mapping[str, str]]) -> Sheet:
     lines: list[list[Value]] = []
     known: dict[str, str] = {}
-    for _, group in groupby(rows, key=lambda row: tuple(_combination(row).values())):
-        own = list(group)
-        known = _combination(own[0])
-        told = summarise(iter(own), len(own))
+    for combination, group in groupby(rows, key=lambda row: tuple(_combination(row).items())):
+        known = dict(combination)
+        told = summarise(map(Row.read, group))
         line: list[Value] = [*known.values(), told.runs]
         for share in (told.converged, told.accepted):
             line += [share.share, share.low, share.high]

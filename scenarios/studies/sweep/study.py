@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import shlex
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -114,6 +115,12 @@ class Study:
             while batch := tuple(islice(seeds, combination.batch_size)):
                 yield Batch(combination, batch)
             within = 0
+
+    def command(self, combination: Combination, seed: int) -> str:
+        """What makes one of the runs again, with its recording."""
+        changes = [text for change in (*self.changes, *combination.changes) for text in ("--set", change)]
+        length = [] if self.duration is None else ["--duration", f"{self.duration:.15g}"]
+        return shlex.join(["formation", "run", combination.file.path, "--seed", str(seed), *length, *changes])
 
     @cached_property
     def manifest(self) -> dict[str, Any]:

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import closing
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
 from scenarios.errors import InputError
 from scenarios.simulation.compiling import compile_filters, compile_whole
 from scenarios.studies.sweep import folder as place
 from scenarios.studies.sweep.row import run_batch
-from scenarios.studies.sweep.study import Batch, Study
-from scenarios.studies.sweep.summary import QUANTILES, Summary, summarise
+from scenarios.studies.sweep.study import Batch, Combination, Study
+from scenarios.studies.sweep.summary import QUANTILES, Summary, Tallies
 from scenarios.work.protocol import Spread
+
+TELLING = 60.0
+"""Seconds after which the summary of the rows so far is written again."""
 
 
 @dataclass(frozen=True)
@@ -52,19 +57,24 @@ def sweep(
     """
     folder = out or study.default_folder
     try:
-        with place.claimed(folder):
+        with place.claimed(folder), closing(Tallies(study.seeds.count)) as tallies:
             kept = done = place.begin(folder, study, restart)
+            with closing(place.read_rows(folder)) as rows_there:
+                tallies.add(rows_there)
             on_progress(done, study.runs)
             if done < study.runs:
                 _compile(study)
+                told = monotonic()
                 for batch, rows in zip(study.batches(done), run_all(run_batch, study.batches(done)), strict=True):
                     place.append(folder, batch, rows)
+                    tallies.add(rows)
                     done += len(rows)
                     on_progress(done, study.runs)
+                    if monotonic() - told > TELLING:
+                        place.write_summary(folder, _summary_file(study, tallies.summaries()))
+                        told = monotonic()
                 place.finish(folder)
-            rows_there = place.read_rows(folder)
-            summaries = [summarise(rows_there, study.seeds.count) for _ in study.combinations]
-            rows_there.close()
+            summaries = tallies.summaries()
             place.write_summary(folder, _summary_file(study, summaries))
     except OSError as error:
         raise InputError(f"--out {folder}: cannot be written: {error.strerror or error}") from error
@@ -81,15 +91,25 @@ def _compile(study: Study) -> None:
 
 
 def _summary_file(study: Study, summaries: Sequence[Summary]) -> dict[str, Any]:
-    """The content of ``summary.json``."""
+    """The content of ``summary.json``, of the combinations that have rows."""
     content = {"changes": list(study.changes), "quantiles_at": QUANTILES}
-    if not study.variations:
-        return {"scenario_sha256": study.combinations[0].file.sha256, **content, **asdict(summaries[0])}
-    return {
-        **content,
-        "varied": {variation.key: variation.values for variation in study.variations},
-        "combinations": [
-            {"changes": combination.changes, "scenario_sha256": combination.file.sha256, **asdict(summary)}
-            for combination, summary in zip(study.combinations, summaries, strict=True)
-        ],
-    }
+    told = [
+        {
+            "changes": combination.changes,
+            "scenario_sha256": combination.file.sha256,
+            **_with_commands(study, combination, summary),
+        }
+        for combination, summary in zip(study.combinations, summaries, strict=False)
+    ]
+    if study.variations:
+        varied = {variation.key: variation.values for variation in study.variations}
+        return {**content, "varied": varied, "combinations": told}
+    return {**told[0], **content}
+
+
+def _with_commands(study: Study, combination: Combination, summary: Summary) -> dict[str, Any]:
+    """A summary, and for each cause of a miss what shows its first run."""
+    content = asdict(summary)
+    for misses in content["causes"]:
+        misses["command"] = study.command(combination, misses["seeds"][0])
+    return content

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Sequence
+from math import floor, log10
 
 from rich.console import Console
 from rich.markup import escape
 
 from scenarios.errors import plain
+from scenarios.studies.sweep.cause import ERROR, MEANINGS
 from scenarios.studies.sweep.folder import ROWS
-from scenarios.studies.sweep.study import Combination, Study
+from scenarios.studies.sweep.study import Study
 from scenarios.studies.sweep.summary import QUANTILES, Share, Summary
 from scenarios.studies.sweep.sweep import Swept
 from scenarios.terminal import new_table, print_table
@@ -49,27 +50,25 @@ def print_sweep(console: Console, study: Study, swept: Swept) -> None:
 
 
 def _print_missed(console: Console, study: Study, summaries: Sequence[Summary]) -> None:
-    """Which runs did not converge or could not be made, and the command that shows the first of each."""
+    """Which runs missed their goal or could not be made, how often for what cause, and what shows the first of each."""
     examples: dict[str, str] = {}
     for combination, summary in zip(study.combinations, summaries, strict=True):
         where = f" with {', '.join(combination.changes)}" if combination.changes else ""
-        for what, seeds in (("failed", summary.failed), ("not converged", summary.missed)):
-            if not seeds:
-                continue
-            more = f" and {len(seeds) - MISSED_SHOWN} more" if len(seeds) > MISSED_SHOWN else ""
-            said = f": {summary.failure}" if what == "failed" else ""
-            named = f"{'seed' if len(seeds) == 1 else 'seeds'} {', '.join(map(str, seeds[:MISSED_SHOWN]))}{more}"
-            console.print(escape(f"{what}{where}: {named}{said}"))
-            examples.setdefault(what, _command(study, combination, seeds[0]))
-    for example in examples.values():
-        console.print(f"to see the first: {escape(example)}")
-
-
-def _command(study: Study, combination: Combination, seed: int) -> str:
-    """What makes one of the runs again."""
-    changes = [text for change in (*study.changes, *combination.changes) for text in ("--set", change)]
-    length = [] if study.duration is None else ["--duration", f"{study.duration:.15g}"]
-    return shlex.join(["formation", "run", combination.file.path, "--seed", str(seed), *length, *changes])
+        of_errors = sum(misses.count for misses in summary.causes if misses.cause == ERROR)
+        of_runs = sum(misses.count for misses in summary.causes) - of_errors
+        for what, seeds, count in (("failed", summary.failed, of_errors), ("not converged", summary.missed, of_runs)):
+            if seeds:
+                shown = seeds[:MISSED_SHOWN]
+                more = f" and {count - len(shown)} more" if count > len(shown) else ""
+                said = f": {summary.failure}" if what == "failed" else ""
+                named = f"{'seed' if count == 1 else 'seeds'} {', '.join(map(str, shown))}{more}"
+                console.print(escape(f"{what}{where}: {named}{said}"))
+        for misses in summary.causes:
+            console.print(escape(f"  {misses.count} {MEANINGS[misses.cause]}: {_share(misses.share)}"))
+            examples.setdefault(misses.cause, study.command(combination, misses.seeds[0]))
+    for cause, example in examples.items():
+        which = f"  # {MEANINGS[cause]}" if len(examples) > 1 else ""
+        console.print(escape(f"to see the first: {example}{which}"))
 
 
 def _print_combinations(console: Console, study: Study, summaries: Sequence[Summary]) -> None:
@@ -106,4 +105,8 @@ def _print_summary(console: Console, summary: Summary) -> None:
 
 
 def _share(share: Share) -> str:
-    return f"{share.share:.1%} (95 % interval {share.low:.1%} to {share.high:.1%})"
+    """A share with its interval, to the digits that tell its smaller side from 0."""
+    rare = min(share.share, 1.0 - share.share)
+    digits = 1 if rare == 0.0 or rare >= 0.01 else 1 - floor(log10(100.0 * rare))
+    low, high = (f"{end:.{digits}%}" for end in (share.low, share.high))
+    return f"{share.share:.{digits}%} (95 % interval {low} to {high})"

@@ -205,7 +205,7 @@ def test_a_run_that_raises_is_a_row_and_the_others_go_on(tmp_path: Path, monkeyp
     monkeypatch.setattr(row, "Runs", advance_or_raise)
     made = study_of("0:5", vary=("plant.name=saturated,pymunk",))
     swept = run(made, tmp_path)
-    found = list(place.read_rows(tmp_path))
+    found = list(place.read_cells(tmp_path))
     assert [row["outcome"] == "failed" for row in found] == [False, False, False, True, False] * 2
     assert found[3]["message"] == found[8]["message"] == "ZeroDivisionError: 0 / 0, ?[31mred"
     assert (found[3]["seed"], found[3]["plant.name"], found[3]["accepted"]) == ("3", "saturated", "")

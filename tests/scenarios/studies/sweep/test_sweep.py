@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.stats import binom
 
 import scenarios.studies.sweep.row
 import scenarios.studies.sweep.study
@@ -174,30 +175,46 @@ def test_a_share_lies_in_its_interval_and_the_interval_in_0_to_1(counts: tuple[i
     assert share.low == pytest.approx(1.0 - mirrored.high, abs=1e-12)
 
 
-@pytest.mark.slow
-def test_the_interval_covers_the_true_share_as_often_as_it_says() -> None:
-    counts = np.random.default_rng(1).binomial(50, 0.9, 2000)
-    covered = [Share.of(int(count), 50).low <= 0.9 <= Share.of(int(count), 50).high for count in counts]
-    assert np.mean(covered) == pytest.approx(0.95, abs=0.03)
+@pytest.mark.parametrize(("count", "total"), [(0, 30), (3, 30), (29, 30), (30, 30), (7, 1_000_000)])
+def test_each_end_of_the_interval_is_the_share_that_makes_such_a_count_a_chance_of_one_in_forty(
+    count: int, total: int
+) -> None:
+    """The definition of Clopper and Pearson's interval."""
+    share = Share.of(count, total)
+    if count:
+        assert binom.sf(count - 1, total, share.low) == pytest.approx(0.025, rel=1e-9)
+    if count < total:
+        assert binom.cdf(count, total, share.high) == pytest.approx(0.025, rel=1e-9)
 
 
 def test_shares_count_converged_and_accepted_runs() -> None:
     rows = [
-        dict.fromkeys(("settling_time_s", "angle_error_sum_rad"), "")
-        | {"seed": str(seed), "outcome": outcome, "accepted": accepted, "min_separation_m": "0.2", "message": message}
-        for seed, (outcome, accepted, message) in enumerate(
-            [("converged", "True", ""), ("converged", "False", ""), ("diverged", "False", ""), ("failed", "", "why")]
+        Row("shape", "pymunk", seed, outcome, accepted=accepted, min_separation_m=0.2, cause=cause, message=message)
+        for seed, (outcome, accepted, cause, message) in enumerate(
+            [
+                ("converged", True, "", ""),
+                ("converged", False, "", ""),
+                ("diverged", False, "diverged", ""),
+                ("failed", None, "error", "why"),
+            ]
         )
     ]
-    summary = summarise(iter(rows), 4)
+    summary = summarise(rows)
     assert summary.converged.share == pytest.approx(2 / 4)
     assert summary.accepted.share == pytest.approx(1 / 4)
     assert (summary.missed, summary.failed, summary.failure) == ((2,), (3,), "why")
+    assert [(misses.cause, misses.count, misses.seeds) for misses in summary.causes] == [
+        ("diverged", 1, (2,)),
+        ("error", 1, (3,)),
+    ]
     assert summary.quantiles["min_separation_m"] == pytest.approx([0.2] * 5)
     assert summary.quantiles["settling_time_s"] is None
 
 
-SUMMARY_KEYS = {"runs", "converged", "accepted", "missed", "failed", "failure", "quantiles", "scenario_sha256"}
+SUMMARY_KEYS = {
+    *("runs", "converged", "accepted", "missed", "failed", "failure", "causes", "quantiles"),
+    "scenario_sha256",
+}
 
 VARIED = ("plant.name=unicycle,pymunk", "robot.projection_distance_m=0.025,0.050")
 
