@@ -28,6 +28,12 @@ OBSTACLE_DISTANCE = COLLISION_DISTANCE / 2.0
 """Metres between a collision centre and an obstacle, up to which the verdict rejects a run."""
 
 
+FEW = 12
+"""Robots up to which all pairs are compared."""
+
+TOGETHER = 4096
+"""States whose pairs are compared at once."""
+
 _ROUNDING = 1e-15  # share of the wheels' limit by which a command that was cut to the limit may be off
 
 
@@ -99,17 +105,34 @@ def collision_centres(poses: Real) -> Real:
 
 
 def separation(centres: Real) -> Separation:
-    """The closest pair at each time, of points (T, n, 2), metres."""
-    from robots.closest_pairs import closest_pairs  # loads numba
-
+    """The closest pair at each time, of points (T, n, 2), metres; of several equally close the first one."""
     steps, n = centres.shape[:2]
     if n < 2:
         return Separation(np.full(steps, np.inf), np.zeros((steps, 2), dtype=np.intp))
-    pairs = closest_pairs(np.ascontiguousarray(centres))
+    points = np.ascontiguousarray(centres)
+    if n <= FEW:
+        pairs = _by_all_pairs(points)
+    else:
+        from robots.closest_pairs import closest_pairs  # loads numba
+
+        pairs = closest_pairs(points)
     one, other = (np.take_along_axis(centres, pairs[:, k, None, None], axis=1)[:, 0] for k in (0, 1))
     with np.errstate(invalid="ignore"):  # a state that is not finite has no separation
         gap = one - other
     return Separation(np.abs(np.ascontiguousarray(gap).view(np.complex128)[:, 0]), pairs)
+
+
+def _by_all_pairs(points: Real) -> NDArray[np.intp]:
+    """(T, 2) what :func:`robots.closest_pairs.closest_pairs` finds, for few robots faster than numba loads."""
+    one, other = np.triu_indices(points.shape[1], 1)
+    pairs = np.empty((len(points), 2), dtype=np.intp)
+    for first in range(0, len(points), TOGETHER):
+        part = points[first : first + TOGETHER]
+        with np.errstate(invalid="ignore", over="ignore"):
+            gaps = np.hypot(*np.moveaxis(part[:, one] - part[:, other], -1, 0))
+        closest = gaps.argmin(axis=1)
+        pairs[first : first + TOGETHER] = np.stack([one[closest], other[closest]], axis=1)
+    return pairs
 
 
 def fastest_allowed(drive: DifferentialDrive) -> float | Real:

@@ -17,7 +17,7 @@ from scenarios.errors import InputError
 def new(name: str, law: bool) -> None:
     """Write NAME.toml, a commented scenario of four robots to change, which runs as it is."""
     from scenarios.definition.files import starter
-    from scenarios.definition.load import LIBRARY
+    from scenarios.definition.files.library import LIBRARY
     from scenarios.storage.files import write_whole
 
     name = name.removesuffix(".toml")

@@ -14,13 +14,15 @@ from scenarios.cli import options
 @options.as_json
 def list_command(as_json: bool) -> None:
     """What scenarios there are."""
-    from scenarios.report.catalogue import describe_library, print_library
+    if as_json:
+        from scenarios.definition.files.library import describe_library
+
+        click.echo(json.dumps(describe_library(), indent=2))
+        return
+    from scenarios.report.catalogue import print_library
     from scenarios.terminal import new_console
 
-    if as_json:
-        click.echo(json.dumps(describe_library(), indent=2))
-    else:
-        print_library(new_console())
+    print_library(new_console())
 
 
 @click.command()

@@ -28,7 +28,7 @@ def completed(names: Callable[[], Iterator[str]], otherwise: str = "plain") -> C
 
 
 def _library() -> Iterator[str]:
-    from scenarios.definition.load import library  # loads pydantic
+    from scenarios.definition.files.library import library
 
     yield from library()
 

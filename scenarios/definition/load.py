@@ -14,12 +14,12 @@ from scenarios.definition.bounds import LARGEST_INTEGER
 from scenarios.definition.digest import digest
 from scenarios.definition.files import law_file
 from scenarios.definition.files.law_file import LawFile
+from scenarios.definition.files.library import LIBRARY as LIBRARY
+from scenarios.definition.files.library import library as library
 from scenarios.definition.files.reading import read_regular
 from scenarios.definition.files.way_points import with_file
 from scenarios.definition.schema import LawTable, Scenario
 from scenarios.errors import InputError, did_you_mean, plain
-
-LIBRARY = Path(__file__).parents[1] / "library"
 
 LONGEST_VALUE = 80
 """Characters of a refused value that a message repeats."""
@@ -50,11 +50,6 @@ class ScenarioFile:
         Of an own law its source counts, wherever its file is.
         """
         return digest(self.scenario.model_dump(mode="json"), self.law)
-
-
-def library() -> list[str]:
-    """Names of the scenarios that come with the project."""
-    return sorted(path.stem for path in LIBRARY.glob("*.toml"))
 
 
 def find(scenario: str) -> Path:

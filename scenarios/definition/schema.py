@@ -20,6 +20,7 @@ from scenarios.definition.bounds import (
     MOST_OBSTACLES,
     SMALLEST,
 )
+from scenarios.definition.files.library import DEFAULT_PLANT
 
 Number = Annotated[float, Field(strict=True, ge=-LARGEST, le=LARGEST, allow_inf_nan=False)]
 Positive = Annotated[float, Field(strict=True, ge=SMALLEST, le=LARGEST, allow_inf_nan=False)]
@@ -266,7 +267,7 @@ class ArenaTable(Table):
 class PlantTable(Table):
     """The world of the run."""
 
-    name: Literal["single_integrator", "unicycle", "saturated", "pymunk"] = "pymunk"
+    name: Literal["single_integrator", "unicycle", "saturated", "pymunk"] = DEFAULT_PLANT
     """From the theorem's points to bodies with mass; `--plant` replaces it."""
     control_period_s: Positive = 0.033
     """Stretched or shortened so that a whole number of periods, at least one, fills each phase."""

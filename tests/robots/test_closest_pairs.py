@@ -8,6 +8,7 @@ from hypothesis.extra import numpy as npst
 from numpy.typing import NDArray
 
 from robots.closest_pairs import closest_pairs
+from robots.testbed import FEW, separation
 
 Real = NDArray[np.float64]
 
@@ -72,3 +73,12 @@ def test_a_state_that_is_not_finite_names_the_first_pair_without_a_distance() ->
     states[1, 3] = np.nan
     states[2, [2, 4]] = np.inf
     assert closest_pairs(states).tolist() == [[0, 1], [0, 3], [2, 4]]
+
+
+@pytest.mark.parametrize("crowd", CROWDS)
+def test_few_robots_are_compared_without_a_compiler_and_have_the_same_pair(crowd: str) -> None:
+    rng = np.random.default_rng(1)
+    start = np.asarray(CROWDS[crowd](rng, FEW), dtype=float)
+    states = start + np.cumsum(rng.normal(0.0, 0.004, (5000, FEW, 2)), axis=0)
+    states[:2], states[2, 3], states[3, [2, 4]] = start, np.nan, np.inf
+    assert (separation(states).pairs == closest_pairs(states)).all()

@@ -11,8 +11,8 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from scenarios.definition.experiment import Experiment
+from scenarios.definition.files.library import library
 from scenarios.definition.files.reading import read_regular
-from scenarios.definition.load import library
 from scenarios.errors import InputError, did_you_mean
 from scenarios.storage.files import write_whole
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from scenarios.definition.load import library
+from scenarios.definition.files.library import library
 from scenarios.errors import InputError
 from scenarios.storage.files import prove_writable, write_text
 from scenarios.studies.check import baseline

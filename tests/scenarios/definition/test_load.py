@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from scenarios.definition.files.library import describe_library
 from scenarios.definition.load import LIBRARY, find, library, load
 from scenarios.errors import InputError, did_you_mean
 
@@ -108,3 +109,16 @@ def test_an_integer_of_more_than_64_bits_is_refused_by_its_place_wherever_it_sta
         load("shape", (change,))
     assert str(refusal.value).startswith(f"shape: {field}: expected an integer of at most 64 bits, got one of ")
     assert len(str(refusal.value)) < 150
+
+
+def test_what_is_read_of_a_scenario_without_the_schema_is_what_it_says() -> None:
+    for told in describe_library():
+        scenario = load(told["scenario"]).scenario
+        formation = scenario.random_formation
+        assert told == {
+            "scenario": told["scenario"],
+            "agents": len(scenario.agents) if formation is None else formation.agents,
+            "duration_s": scenario.duration_s or sum(phase.duration_s for phase in scenario.phases),
+            "plant": scenario.plant.name,
+            "title": scenario.title,
+        }
