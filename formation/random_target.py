@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from formation.constraint import interior_angles
@@ -39,20 +41,20 @@ def random_target(
     p = np.empty((n, 2))
     neighbours = np.empty((n - 2, 2), dtype=np.intp)
     least = np.sin(min_angle)
+    taken = _Taken(min_separation)
     for k in range(n):
         for _ in range(MAX_ROUNDS):
             places = _disc(CANDIDATES, radius, rng)
-            clear = (np.linalg.norm(places[:, None] - p[:k], axis=-1) >= min_separation).all(axis=1)
-            if k < 2:
-                fits = clear
-            else:
+            round_enough = np.ones(CANDIDATES, dtype=bool)
+            if k >= 2:
                 i = rng.integers(0, k, CANDIDATES)
                 j = rng.integers(0, k - 1, CANDIDATES)
                 j += j >= i
-                fits = clear & (np.abs(np.sin(interior_angles(p[i], p[j], places))) >= least).all(axis=1)
-            if fits.any():
-                chosen = int(fits.argmax())
+                round_enough = (np.abs(np.sin(interior_angles(p[i], p[j], places))) >= least).all(axis=1)
+            chosen = next((c for c in np.flatnonzero(round_enough).tolist() if taken.free(places[c])), None)
+            if chosen is not None:
                 p[k] = places[chosen]
+                taken.add(p[k])
                 if k >= 2:
                     neighbours[k - 2] = i[chosen], j[chosen]
                 break
@@ -62,6 +64,30 @@ def random_target(
                 f"{min_separation:g} m and angles of at least {np.degrees(min_angle):g} degrees"
             )
     return TargetFormation(SensingGraph(neighbours), p)
+
+
+class _Taken:
+    """Points by the cells of a grid as wide as the distance that others keep from them: only nine cells can matter."""
+
+    def __init__(self, separation: float) -> None:
+        self._separation = separation
+        self._cells: dict[tuple[int, int], list[Real]] = {}
+
+    def _cell(self, point: Real) -> tuple[int, int]:
+        x, y = point.tolist()
+        return math.floor(x / self._separation), math.floor(y / self._separation)
+
+    def free(self, point: Real) -> bool:
+        """Whether no point that was added is nearer than the separation, metres."""
+        if self._separation == 0.0:
+            return True
+        cx, cy = self._cell(point)
+        near = [other for dx in (-1, 0, 1) for dy in (-1, 0, 1) for other in self._cells.get((cx + dx, cy + dy), ())]
+        return not near or bool((np.linalg.norm(point - np.array(near), axis=-1) >= self._separation).all())
+
+    def add(self, point: Real) -> None:
+        if self._separation > 0.0:
+            self._cells.setdefault(self._cell(point), []).append(point)
 
 
 def _disc(count: int, radius: float, rng: np.random.Generator) -> Real:

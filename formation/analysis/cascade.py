@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -23,6 +24,9 @@ from formation import agents
 from formation.graph.sensing import SensingGraph
 from formation.plane import Complex, Real, as_complex
 from formation.target import TargetFormation
+
+DENSE = 200
+"""Agents up to which one full matrix carries the errors on; from there on it is slower than what its rows hold."""
 
 TAYLOR_NORM = 0.5
 TAYLOR_TERMS = 16
@@ -46,6 +50,15 @@ def exponential(apply: Callable[[Complex], Complex], size: int, norm: float) -> 
     for _ in range(halvings):
         result = result @ result
     return result
+
+
+def _terms(norm: float) -> int:
+    """Terms of the exponential series of a matrix with a norm up to 1, the rest of which is below rounding."""
+    size, terms = norm, 1
+    while size > np.finfo(float).eps / 64.0:
+        terms += 1
+        size *= norm / terms
+    return terms
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,16 +125,32 @@ class Cascade:
         return exponential(lambda states: self.apply(states) * duration, self.n, duration * self.norm)
 
     def act(self, states: Complex, duration: float) -> Complex:
-        """exp(matrix of all agents times ``duration`` seconds) times states (n, ...), by series and small steps."""
+        """exp(matrix of all agents times ``duration`` seconds) times states (n, ...), by series and small steps.
+
+        A step costs what the rows of the matrix hold, n and not n^2.
+        """
         norm = duration * self.norm
         parts = max(1, int(np.ceil(norm)))
+        terms = _terms(norm / parts)
+        rows = self.rows if states.ndim <= 2 else None
         for _ in range(parts):
-            term, sum_ = states, states.copy()
-            for order in range(1, TAYLOR_TERMS + 1):
-                term = self.apply(term) * (duration / (parts * order))
+            term, sum_ = states, states.astype(np.complex128)
+            for order in range(1, terms + 1):
+                term = (self.apply(term) if rows is None else rows @ term) * (duration / (parts * order))
                 sum_ += term
             states = sum_
         return states
+
+    @cached_property
+    def rows(self) -> Any:
+        """The matrix of all agents, 1/s, by what its rows hold: a sparse array of scipy."""
+        from scipy.sparse import csr_array
+
+        k, (i, j) = np.arange(agents.FIRST_ORDINARY, self.n), self.graph.neighbours.T
+        own = np.arange(1, self.n)
+        held = np.concatenate([-self.rates, self.rates[1:] * self.pulls[:, 0], self.rates[1:] * self.pulls[:, 1]])
+        places = np.concatenate([own, k, k]), np.concatenate([own, i, j])
+        return csr_array((held, places), shape=(self.n, self.n))
 
     @cached_property
     def norm(self) -> float:

@@ -7,15 +7,12 @@ from itertools import islice
 
 import numpy as np
 
-from formation.analysis.cascade import Cascade
+from formation.analysis.cascade import DENSE, Cascade
 from formation.plane import Complex, Real, as_complex, as_vectors
 from formation.target import TargetFormation
 
 FIRST_FOLLOWER_RATE = {"stationary": 0.0, "displacement": 1.0}
 """r_2, 1/s, of the first-follower laws that are linear."""
-
-DENSE = 200
-"""Agents up to which one full matrix carries the errors on; from there on it is slower than what its rows hold."""
 
 
 def closed_loop_matrix(target: TargetFormation, first_follower: str = "stationary") -> Complex:

@@ -19,7 +19,7 @@ from itertools import accumulate, count, islice, pairwise, repeat, tee
 import numpy as np
 
 from formation import agents
-from formation.analysis.cascade import Cascade, exponential
+from formation.analysis.cascade import DENSE, Cascade, exponential
 from formation.analysis.first_follower import Motion, motion
 from formation.laws.first_follower import EDGE_LAWS
 from formation.maneuver import Phase
@@ -116,9 +116,14 @@ def _summed(cascade: Cascade, h: float) -> Complex:
 
 @dataclass(frozen=True, eq=False)
 class _Stretch:
-    """One exact step of the agents that something drives: e^{M h}, and what each node of the quadrature adds."""
+    """One exact step of the agents that something drives: e^{M h}, and what each node of the quadrature adds.
 
-    forward: Complex
+    Of few agents e^{M h} is a matrix; of many only what it does to a state is ever known.
+    """
+
+    cascade: Cascade
+    h: float
+    forward: Complex | None
     nodes: Real
     kernels: Complex
 
@@ -128,15 +133,31 @@ class _Stretch:
         """Of the agents from ``row`` on: those behind the first follower, or with it, at its rate."""
         roots, weights = np.polynomial.legendre.leggauss(NODES)
         nodes = (roots + 1.0) * (h / 2.0)
-        told = np.eye(1, cascade.n - 1, dtype=np.complex128)[0] * cascade.rates[0]
-        driven = cascade.whole[row:, row - 1] if row == ROW else told
-        kernels: Complex = np.stack([cascade.exponential(h - node)[row:, row:] @ driven for node in nodes], axis=1)
-        return cls(cascade.exponential(h)[row:, row:], nodes, kernels * (weights * (h / 2.0)))
+        driven = _driven(cascade, row)
+        if cascade.n > DENSE:
+            kernels = np.stack([cascade.act(driven, h - node)[row:] for node in nodes], axis=1)
+            return cls(cascade, h, None, nodes, kernels * (weights * (h / 2.0)))
+        kernels = np.stack([cascade.exponential(h - node)[row:, row:] @ driven[row:] for node in nodes], axis=1)
+        return cls(cascade, h, cascade.exponential(h)[row:, row:], nodes, kernels * (weights * (h / 2.0)))
 
     def advance(self, state: Complex, drive: Callable[[Real], Complex], begin: float) -> Complex:
         """The driven agents' ``state`` after the stretch that begins at ``begin`` seconds."""
         times = begin + self.nodes.reshape(-1, *(1,) * (state.ndim - 1))
-        return self.forward @ state + self.kernels @ drive(times)
+        if self.forward is not None:
+            return self.forward @ state + self.kernels @ drive(times)
+        still = np.zeros((self.cascade.n - len(state), *state.shape[1:]), dtype=np.complex128)
+        onward = self.cascade.act(np.concatenate([still, state]), self.h)[len(still) :]
+        return onward + np.einsum("kq,q...->k...", self.kernels, drive(times))
+
+
+def _driven(cascade: Cascade, row: int) -> Complex:
+    """(n,) what 1 m of the drive does each second to the agents from ``row`` on."""
+    driven = np.zeros(cascade.n, dtype=np.complex128)
+    if row == agents.FIRST_FOLLOWER:
+        driven[row] = cascade.rates[0]
+    else:
+        driven[ROW:] = cascade.rows[ROW:, [agents.FIRST_FOLLOWER]].toarray()[:, 0]
+    return driven
 
 
 def ideal(

@@ -21,8 +21,8 @@ SMALLEST = 1e-9
 LARGEST_INTEGER = 2**63 - 1
 """Of TOML: an integer beyond it, or below its negative, is refused wherever it stands."""
 
-MOST_AGENTS = 5_000
-"""Agents: matrices of all pairs (the exact closed loop, the velocity estimator) stay below half a GB each."""
+MOST_AGENTS = 10_000
+"""Agents: matrices of all pairs (the velocity estimator, an audited closed loop) stay below 2 GB each."""
 
 MOST_OBSTACLES = 1_000
 """Obstacles, and vertices of one."""

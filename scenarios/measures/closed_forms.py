@@ -109,6 +109,7 @@ def closed_forms(experiment: Experiment, start: Real) -> ClosedForms | None:
     )
     if experiment.first_follower in ("distance", "bearing"):
         power[0] /= 2.0  # these laws see one of the two coordinates
+    noise = noise_rms(loop, period, power)
     modes = -loop.rates[loop.rates > 0.0]
     undone = table.own_motion != "unknown"
     late = table.delay_periods * period
@@ -117,8 +118,10 @@ def closed_forms(experiment: Experiment, start: Real) -> ClosedForms | None:
     speed = float(np.min(experiment.fleet.drive.speed_limit))
     return ClosedForms(
         loop=loop,
-        noise=noise_rms(loop, period, power),
-        paper_noise=noise_rms(replace(loop, rates=_paper_rates(experiment, loop)), period, power),
+        noise=noise,
+        paper_noise=noise
+        if experiment.own_gains is None
+        else noise_rms(replace(loop, rates=_paper_rates(experiment, loop)), period, power),
         assumed=assumed,
         bias=bias_gains(loop),
         growth=transient_gain(loop) if few else None,

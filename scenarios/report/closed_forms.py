@@ -13,12 +13,21 @@ from scenarios.terminal import new_table, print_table
 
 Real = NDArray[np.float64]
 
+MOST_LISTED = 100
+"""Agents that have lines of their own."""
+
+MOST_SOLVED = 1000
+"""Agents whose noise is told: its covariance has the square of their number of entries, and takes as long."""
+
 MOST_CROSSINGS = 4
 """Lines of sight that are named."""
 
 
 def print_closed_forms(console: Console, experiment: Experiment, start: Real) -> None:
     """Per agent and for the formation; nothing for a law that the closed forms are not of."""
+    if experiment.n > MOST_SOLVED:
+        console.print(f"\nclosed forms of noise, delay and passages: told of up to {MOST_SOLVED} agents")
+        return
     found = closed_forms(experiment, start)
     if found is None:
         return
@@ -34,13 +43,15 @@ def _print_agents(console: Console, experiment: Experiment, found: ClosedForms, 
     if near is not None:
         columns += ["clear of neighbours (m)", "of others (m)", "nearest"]
     table = new_table(*columns)
-    for row in range(experiment.n):
+    for row in range(min(experiment.n, MOST_LISTED)):
         cells = [str(experiment.number(row)), f"{1e3 * found.noise[row]:.2f}", f"{found.bias[row]:.2f}"]
         follower = row - agents.FIRST_ORDINARY
         if near is not None:
             cells += ["-"] * 3 if follower < 0 else _ways(experiment, near, follower)
         table.add_row(*cells)
     print_table(console, table)
+    if experiment.n > MOST_LISTED:
+        console.print(f"and {experiment.n - MOST_LISTED} agents more")
 
 
 def _ways(experiment: Experiment, near: Passages, follower: int) -> list[str]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from scenarios.measures.late_rates import expected_late_rates
 from scenarios.measures.predictions.forecast import NEAR, PhaseForecast, forecast
 from scenarios.measures.predictions.remarks import remarks
 from scenarios.report.cells import CHANGING, NO_PREDICTION, chosen, digits, place
-from scenarios.report.closed_forms import print_closed_forms
+from scenarios.report.closed_forms import MOST_LISTED, print_closed_forms
 from scenarios.report.course import print_course
 from scenarios.report.happenings import print_plan
 from scenarios.simulation.compiled.ability import unable
@@ -47,10 +48,18 @@ def print_experiment(console: Console, experiment: Experiment, seed: int) -> Non
     how = "whole periods of many runs are one compiled call" if reason is None else f"stepped by Python, {reason}"
     console.print(escape(f"\nsweep: {how}"))
     table = new_table("angle", "target (deg)")
-    for name, value in zip(experiment.angle_names, np.degrees(experiment.target_angles), strict=True):
+    angles = zip(experiment.angle_names, np.degrees(experiment.target_angles), strict=True)
+    for name, value in islice(angles, MOST_LISTED):
         table.add_row(name, f"{value:.4f}")
     console.print("\n[bold]Angles, counter-clockwise, alpha(vertex;from,to)[/bold]")
     print_table(console, table)
+    _print_rest(console, len(experiment.target_angles), "angles")
+
+
+def _print_rest(console: Console, count: int, what: str) -> None:
+    """How many more there are than have lines of their own."""
+    if count > MOST_LISTED:
+        console.print(f"and {count - MOST_LISTED} {what} more")
 
 
 def _print_assumptions(console: Console, experiment: Experiment, start: Any) -> None:
@@ -81,16 +90,28 @@ def _print_graph(console: Console, experiment: Experiment, start: Any) -> None:
     origin = "as given" if experiment.scenario.graph == "given" else "designed from the target"
     console.print(f"  {condition} sensing graph: holds, {graph.n} agents, {len(graph.edges)} edges, {origin}\n")
     table = new_table("agent", "senses", "start (m)")
-    for row in range(graph.n):
-        senses = [str(experiment.number(i)) for k, i in graph.edges if k == row]
+    sensed = _sensed(graph.n, graph.edges)
+    for row in range(min(graph.n, MOST_LISTED)):
+        senses = [str(experiment.number(i)) for i in sensed[row]]
         table.add_row(str(experiment.number(row)), ", ".join(senses) or "-", place(start[row]))
     print_table(console, table)
+    _print_rest(console, graph.n, "agents")
+
+
+def _sensed(n: int, edges: Iterable[tuple[int, int]]) -> list[list[int]]:
+    """The rows that each of n agents senses, of edges (k, i): k senses i."""
+    found: list[list[int]] = [[] for _ in range(n)]
+    for k, i in edges:
+        found[k].append(i)
+    return found
 
 
 def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any) -> None:
     target = experiment.target
     graph = target.graph
-    rates, late = decay_rates(target), expected_late_rates(experiment, start)
+    few = graph.n <= MOST_LISTED  # late rates are measured of the exact motion of all
+    rates, late = decay_rates(target), expected_late_rates(experiment, start) if few else None
+    sensed = _sensed(graph.n, graph.edges)
     margins = collision_margins(target, start, end)
     at_rest = len(experiment.phases) == 1 and not experiment.phases[0].moving
     still = at_rest and experiment.predicted  # the premise of Lemma 3
@@ -105,9 +126,9 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
         "end (m)",
         "margin of (c3) (m)",
     )
-    for row in range(graph.n):
+    for row in range(min(graph.n, MOST_LISTED)):
         follower = row - agents.FIRST_ORDINARY
-        senses = [str(experiment.number(i)) for k, i in graph.edges if k == row]
+        senses = [str(experiment.number(i)) for i in sensed[row]]
         cells = ["-"] * 4
         if follower >= 0:
             cells = [
@@ -126,6 +147,7 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
             cells[3],
         )
     print_table(console, table)
+    _print_rest(console, graph.n, "agents")
     if still:
         console.print("(c3): a follower with a positive margin that starts after its neighbours settled avoids both")
 

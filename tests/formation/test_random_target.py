@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formation import random_target
-from formation.random_target import _disc
+from formation.random_target import _disc, _Taken
 
 
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 30), degrees=st.floats(1.0, 25.0))
@@ -37,3 +37,20 @@ def test_places_are_drawn_with_the_same_density_all_over_the_disc() -> None:
     assert squared.max() <= 1.0
     np.testing.assert_allclose(np.quantile(squared, [0.25, 0.5, 0.75]), [0.25, 0.5, 0.75], atol=0.015)
     np.testing.assert_allclose(places.mean(axis=0), 0.0, atol=0.03)
+
+
+@given(
+    points=st.lists(st.tuples(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)), min_size=1, max_size=30),
+    separation=st.sampled_from([0.0, 0.01, 0.1, 0.5, 3.0]),
+)
+def test_a_place_is_free_where_no_agent_at_all_is_too_near(
+    points: list[tuple[float, float]], separation: float
+) -> None:
+    taken = _Taken(separation)
+    there: list[np.ndarray] = []
+    for point in map(np.array, points):
+        free = all(np.linalg.norm(point - other) >= separation for other in there)
+        assert taken.free(point) == free
+        if free:
+            taken.add(point)
+            there.append(point)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +12,8 @@ from numpy.typing import NDArray
 from formation import Phase
 from formation.analysis.cascade import Cascade
 from formation.analysis.closed_loop import arrival
-from formation.analysis.exact import ideal, points
-from formation.plane import Complex, as_complex
+from formation.analysis.exact import ideal
+from formation.plane import Complex, as_complex, as_vectors
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.predictions.theory import motion, moves_exactly
 from scenarios.measures.tracking import predicted_ends
@@ -66,7 +67,8 @@ def forecast(experiment: Experiment, start: Real, told: Collection[int] | None =
         if constant and (told is None or index in told):
             arrived = arrival(_errors(loop, as_complex(here), phase, first, as_complex(end)), loop.reach, NEAR, STEP)
         if experiment.estimator is None:
-            here = points(ideal(loop, as_complex(here), phase, first, phase.duration / steps), steps)[-1]
+            states = ideal(loop, as_complex(here), phase, first, phase.duration / steps)
+            here = as_vectors(next(islice(states, steps, None)))
         else:
             here = motion(experiment, here, index, continuous=True)[-1]
         error_sum = float(np.abs(experiment.angles.errors(here, shaped.target_angles)).sum())

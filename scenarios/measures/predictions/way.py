@@ -29,6 +29,9 @@ STEP = 0.1
 
 MOST_STEPS = 20_000
 
+MOST_PLACES = 5_000_000
+"""Of all agents at all times that are looked at."""
+
 ROUNDING = 1e-9
 """Metres."""
 
@@ -41,7 +44,7 @@ def way(experiment: Experiment, start: Real) -> tuple[Real, Real] | None:
     if not experiment.predicted:
         return None
     seconds = sum(phase.duration for phase in experiment.phases)
-    step = max(STEP, seconds / MOST_STEPS)
+    step = max(STEP, seconds / MOST_STEPS, seconds * experiment.n / MOST_PLACES)
     if not moves_exactly(experiment):
         if experiment.phases[0].reference is None:
             return None

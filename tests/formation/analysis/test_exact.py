@@ -1,5 +1,6 @@
 """The exact motion: the first follower in closed form, the cascade that it drives, commands that are held or change."""
 
+import math
 from itertools import islice
 
 import numpy as np
@@ -8,7 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from formation import EDGE_LAWS, AngleLaw, Phase, TargetFormation, VelocityEstimator, random_target
-from formation.analysis import first_follower, lags
+from formation.analysis import cascade, exact, first_follower, lags
 from formation.analysis.cascade import Cascade
 from formation.analysis.exact import held, ideal, points, steer
 from formation.plane import as_complex, as_vectors
@@ -209,3 +210,20 @@ def test_behind_a_ramped_velocity_spread_by_consensus_the_agents_lag_as_predicte
         q = q + h * pull
     predicted = lags.velocity_lags(target, edges, kappa, complex(*slope))
     np.testing.assert_allclose(q - lags.shares(target) * delta, predicted, rtol=0.02, atol=1e-6)
+
+
+@pytest.mark.parametrize("law", ["displacement", "distance"])
+def test_many_agents_move_as_few_do_though_no_full_matrix_is_made(law: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    target = random_target(40, np.random.default_rng(3))
+    start = as_complex(np.random.default_rng(4).uniform(-1.0, 1.0, (40, 2)))
+    by_matrix = points(ideal(Cascade.of(target), start, PHASE, law, 0.25), 12)
+    monkeypatch.setattr(exact, "DENSE", 10)
+    by_rows = points(ideal(Cascade.of(target), start, PHASE, law, 0.25), 12)
+    np.testing.assert_allclose(by_rows, by_matrix, rtol=0.0, atol=1e-12)
+
+
+@given(st.floats(1e-6, 1.0))
+def test_the_series_ends_where_what_is_left_out_is_below_rounding(norm: float) -> None:
+    terms = cascade._terms(norm)
+    rest = sum(norm**k / math.factorial(k) for k in range(terms + 1, terms + 20))
+    assert rest < np.finfo(float).eps / 32.0

@@ -11,6 +11,7 @@ from scenarios.errors import InputError
 from scenarios.measures.closed_forms import closed_forms, passages
 from scenarios.measures.predictions.theory import motion
 from scenarios.report.closed_forms import print_closed_forms
+from scenarios.report.experiment import print_experiment
 from scenarios.simulation.loop import simulate
 
 
@@ -99,3 +100,13 @@ def test_a_follower_may_have_its_own_gain_and_agents_1_and_2_have_none(varied: C
         varied("agents.2.gain=1.5")
     with pytest.raises(InputError, match=r"law\.gain: only for the angle law"):
         open_experiment("law-distance", ("law.gain=normalised",))
+
+
+def test_of_many_agents_the_first_ones_have_lines_of_their_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("scenarios.report.experiment.MOST_LISTED", 4)
+    monkeypatch.setattr("scenarios.report.closed_forms.MOST_LISTED", 4)
+    console = Console(width=200)
+    with console.capture() as capture:
+        print_experiment(console, open_experiment("shape"), 0)
+    assert capture.get().count("and 2 agents more") == 2
+    assert "and 4 angles more" in capture.get()
