@@ -26,6 +26,8 @@ OBSTACLE = "#BDBDBD"
 
 HEAD = 0.07
 """Metres; the length of an arrow's head on an edge."""
+MOST_DRAWN = 100_000
+"""Places of all agents that trails go through."""
 
 MARGIN = 0.05
 """Free ground around all that is shown, as a share of its longer side."""
@@ -54,9 +56,11 @@ def prepare(axes: Axes, arena: Arena, shown: Limits) -> None:
 
 
 def draw_trails(axes: Axes, trajectory: Trajectory, width: float = 0.7) -> None:
-    """The path of each projected point, one line per agent in the order of the agents."""
-    for row in range(trajectory.points.shape[1]):
-        x, y = trajectory.points[:, row].T
+    """The path of each projected point, one line per agent in the order of the agents; of a crowd not every state."""
+    steps, n = trajectory.points.shape[:2]
+    stride = max(1, steps * n // MOST_DRAWN)
+    for row in range(n):
+        x, y = trajectory.points[::stride, row].T
         axes.plot(x, y, color=agent_colour(row), linewidth=width, alpha=0.75, zorder=2, label=f"trail {row}")
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
@@ -28,6 +30,10 @@ the type."""
 
 _DENSE, _RASTER = 100_000, 0.5
 """Occupied points from which on they are merged where they are nearer than this, points of type."""
+
+_SEARCHED = 20_000
+"""Occupied points from which on a tree is searched for those near a label, at so many places along its middle:"""
+_ALONG = 5
 
 _COVERING, _LEGIBLE = 0.5, 0.35
 """Clearance, in heights of the type, below which a label hides what is near, and is left out on crowded axes."""
@@ -66,6 +72,7 @@ class Labels:
             points = np.unique(np.round(points / _RASTER).astype(np.int32).view(np.int64)).view(np.int32)
             points = _RASTER * points.reshape(-1, 2)
         self._occupied = points[np.argsort(points[:, 0])]  # by x: a thousand trails are searched for every label
+        self._tree: Any = _tree(points) if len(points) > _SEARCHED else None
         self._labels = np.empty((0, 2))
 
     def put(self, anchor: Real, text: str, distance: float, size: float = SMALL, crowded: bool = False) -> None:
@@ -103,9 +110,13 @@ class Labels:
         (x0, x1), (y0, y1) = (
             np.array(limits) * self._scale for limits in (self._axes.get_xlim(), self._axes.get_ylim())
         )
-        offset = self._near(candidates, half_width + _ENOUGH * size) - candidates[:, None, :]
-        gap = np.hypot(np.maximum(np.abs(offset[..., 0]) - half_width, 0.0), offset[..., 1])
-        nearest = gap.min(axis=1, initial=np.inf)
+        reach = half_width + _ENOUGH * size
+        if self._tree is None:
+            nearest = _gaps(candidates, np.concatenate([self._near(candidates, reach), self._labels]), half_width)
+        else:
+            nearest = np.minimum(
+                _gaps(candidates, self._labels, half_width), self._searched(candidates, half_width, _ENOUGH * size)
+            )
         inside = (candidates[:, 0] - half_width > x0) & (candidates[:, 0] + half_width < x1)
         inside &= (candidates[:, 1] - 0.5 * size > y0) & (candidates[:, 1] + 0.5 * size < y1)
         return np.where(inside, np.minimum(nearest, _ENOUGH * size), -size)
@@ -128,4 +139,23 @@ class Labels:
         low, high = candidates.min(axis=0) - reach, candidates.max(axis=0) + reach
         first, last = np.searchsorted(self._occupied[:, 0], [low[0], high[0]])
         band = self._occupied[first:last]
-        return np.concatenate([band[(band[:, 1] >= low[1]) & (band[:, 1] <= high[1])], self._labels])
+        return band[(band[:, 1] >= low[1]) & (band[:, 1] <= high[1])]
+
+    def _searched(self, candidates: Real, half_width: float, enough: float) -> Real:
+        """(c,) the gap to what is occupied, found in the tree; infinite where it is enough."""
+        along = np.linspace(-half_width, half_width, _ALONG)[:, None, None] * [1.0, 0.0]
+        distances, _ = self._tree.query(candidates + along, distance_upper_bound=enough)
+        return np.asarray(distances).min(axis=0)
+
+
+def _tree(points: Real) -> Any:
+    from scipy.spatial import KDTree
+
+    return KDTree(points)
+
+
+def _gaps(candidates: Real, points: Real, half_width: float) -> Real:
+    """(c,) distance of the nearest of points (q, 2) from a label's middle, a line of half a width to either side."""
+    offset = points - candidates[:, None, :]
+    gap = np.hypot(np.maximum(np.abs(offset[..., 0]) - half_width, 0.0), offset[..., 1])
+    return np.asarray(gap.min(axis=1, initial=np.inf))

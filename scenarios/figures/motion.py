@@ -28,7 +28,7 @@ from scenarios.figures.happenings import (
 from scenarios.figures.labels import Labels, points_per_metre
 from scenarios.figures.palette import INK
 from scenarios.figures.style import COLUMN, SMALL, panel, sheet
-from scenarios.figures.timelines import MANY, draw_error_sum, draw_errors, few_phases, mark_phases
+from scenarios.figures.timelines import CROWD, MANY, draw_error_sum, draw_errors, few_phases, mark_phases
 from scenarios.measures.metrics import Metrics
 from scenarios.simulation.trajectory import Trajectory
 
@@ -100,7 +100,10 @@ def motion(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, at:
             handles, names, loc="lower center", ncols=4, bbox_to_anchor=(0.5, (words + 0.02) / figure.get_figheight())
         )
     else:
-        text = f"{len(experiment.angles)} angles, each in the colour of the agent at its vertex"
+        drawn = "each in the colour of the agent at its vertex"
+        if len(experiment.angles) > CROWD:
+            drawn = "median (line), nine of ten (grey), largest (dashed)"
+        text = f"{len(experiment.angles)} angles: {drawn}"
         figure.text(0.5, (words + 0.04) / figure.get_figheight(), text, fontsize=SMALL, ha="center", va="bottom")
     figure.align_ylabels([upper, lower])
     return figure

@@ -29,6 +29,12 @@ MANY = 12
 """More lines than this get no legend of their own."""
 
 
+CROWD = 60
+"""More angles than this are drawn as what they have in common."""
+
+QUANTILES = (0.05, 0.5, 0.95)
+
+
 def few_phases(experiment: Experiment) -> bool:
     """Whether phases are so few that each has its name, its snapshot and its panel."""
     return len(experiment.phases) <= MOST_PHASES
@@ -66,7 +72,10 @@ def draw_error_sum(axes: Axes, experiment: Experiment, trajectory: Trajectory, m
 
 
 def draw_errors(axes: Axes, experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> None:
-    """Each angle error in the colour of its vertex; a line style for each angle at one vertex."""
+    """Each angle error in the colour of its vertex, a line style for each angle at one vertex; of a crowd quantiles."""
+    if len(experiment.angles) > CROWD:
+        _draw_quantiles(axes, trajectory.t, np.abs(metrics.angle_errors), experiment.goal / len(experiment.angles))
+        return
     seen: dict[int, int] = {}
     for column, (vertex, name) in enumerate(
         zip(experiment.angles.triples[:, 0].tolist(), experiment.angle_names, strict=True)
@@ -80,6 +89,21 @@ def draw_errors(axes: Axes, experiment: Experiment, trajectory: Trajectory, metr
         )  # fmt: skip
     axes.axhline(0.0, color=FAINT, linewidth=0.4, zorder=0)
     axes.set(xlim=(trajectory.t[0], trajectory.t[-1]), xlabel=TIME, ylabel="angle error (rad)")
+
+
+def _draw_quantiles(axes: Axes, t: Real, errors: Real, goal: float) -> None:
+    """The median of the absolute errors (T, m), where nine of ten are, and the largest, on a log axis.
+
+    Errors that all equal ``goal`` have a sum that just meets it.
+    """
+    low, middle, high = np.nanquantile(errors, QUANTILES, axis=1)
+    axes.fill_between(t, low, high, color=FAINT, alpha=0.5, linewidth=0.0, label="nine of ten")
+    axes.semilogy(t, middle, color=INK, linewidth=0.9, label="median")
+    axes.semilogy(t, np.nanmax(errors, axis=1), color=INK, linewidth=0.6, linestyle="--", label="largest")
+    axes.axhline(goal, color=INK, linewidth=0.5, linestyle=":")
+    axes.set(xlim=(t[0], t[-1]), ylim=(1e-3 * goal, 2.0 * np.pi), xlabel=TIME, ylabel="|angle error| (rad)")
+    axes.yaxis.set_major_locator(LogLocator(numticks=6))
+    axes.yaxis.set_minor_locator(NullLocator())
 
 
 def written(name: str) -> str:

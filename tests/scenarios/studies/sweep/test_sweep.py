@@ -3,6 +3,8 @@
 import csv
 import json
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -103,6 +105,17 @@ def test_rows_do_not_depend_on_the_number_of_processes(plant: str, tmp_path: Pat
     for workers in (1, 2):
         sweep_shape(changes, "0:5", tmp_path / str(workers), workers)
     assert (tmp_path / "1" / ROWS).read_bytes() == (tmp_path / "2" / ROWS).read_bytes()
+
+
+@pytest.mark.parametrize("plant", ["saturated", "pymunk"])
+def test_rows_made_by_threads_beside_each_other_are_those_made_one_after_another(plant: str) -> None:
+    """One run in one thread leaves nothing behind that another one in another thread would meet."""
+    [batch] = open_study("shape", (*SHORT, "plant.name=saturated"), (), parse_seeds("0:6")).batches()
+    if plant == "pymunk":
+        batch = replace(batch, combination=open_study("shape", SHORT, (), parse_seeds("0")).combinations[0])
+    alone = [replace(batch, seeds=(seed,)) for seed in batch.seeds]
+    with ThreadPoolExecutor(3) as threads:
+        assert [row for rows in threads.map(run_batch, alone) for row in rows] == run_batch(batch)
 
 
 def test_a_run_that_diverges_does_not_cut_the_others_of_its_batch_short(monkeypatch: pytest.MonkeyPatch) -> None:
