@@ -3,6 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 LOWEST := .venv-lowest
 DOCS := .venv-docs
+PEERS := .venv-peers
 DIST := .venv-dist
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
@@ -11,7 +12,7 @@ SCENARIO ?= shape
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install run test quick lint check bench figures dist lowest mutants fuzz kills pairs evidence screenshots gallery docs docs-check clean
+.PHONY: help install run test quick lint check bench peers figures dist lowest mutants fuzz kills pairs evidence screenshots gallery docs docs-check clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -54,6 +55,9 @@ check: $(STAMP) ## run every scenario again and compare it with its baseline
 
 bench: $(STAMP) ## benchmarks, with their targets
 	$(BIN)/pytest tests/benchmarks --benchmark-only --benchmark-disable-gc
+
+peers: $(STAMP) ## our time beside other simulators', docs/performance.md (RPS=, RPS_JAX=: folders of theirs)
+	RPS=$(RPS) RPS_JAX=$(RPS_JAX) $(BIN)/python docs/peers/compare.py
 
 figures: $(STAMP) ## draw the figures of the documents, the film included
 	$(BIN)/formation run shape --out runs/figures/shape
@@ -136,5 +140,5 @@ docs-check: $(STAMP) ## every command of the documents, as it stands there (abou
 	DOCUMENTS_WHOLE=1 $(BIN)/pytest -n 0 tests/test_documents.py
 
 clean: ## remove the environment, caches and runs
-	rm -rf $(VENV) $(LOWEST) $(DOCS) $(DIST) runs build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache .benchmarks
+	rm -rf $(VENV) $(LOWEST) $(DOCS) $(PEERS) $(DIST) runs build dist *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache .benchmarks
 	find formation robots scenarios tests -name __pycache__ -type d -exec rm -rf {} +

@@ -26,6 +26,7 @@ OBSTACLE = "#BDBDBD"
 
 HEAD = 0.07
 """Metres; the length of an arrow's head on an edge."""
+
 MOST_DRAWN = 100_000
 """Places of all agents that trails go through."""
 

@@ -30,8 +30,8 @@ MEANINGS = {
 }
 """What runs of each cause did."""
 
-STILL = 1e-3
-"""m/s; slower robots count as standing."""
+STILL = 1e-5
+"""m/s; slower robots count as standing: in a minute they get no further than a hair."""
 
 
 class Ends(NamedTuple):
