@@ -28,8 +28,9 @@ SINGLE = "pymunk"
 BATCH_STATES = 1_000_000
 """Robots times control periods that advance as one array: some 60 MB of states."""
 
-LANES = 768
-"""Robots of compiled runs that advance side by side, run by run."""
+LANES = 1584
+"""Robots of compiled runs that advance side by side, run by run: 264 runs of six. Rows of a state a power of two apart
+would share lines of the cache."""
 
 MOST_TOGETHER = 64
 """Robots of a run up to which compiled runs advance side by side; larger ones search for neighbours, each by itself."""
