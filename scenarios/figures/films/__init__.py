@@ -1,3 +1,3 @@
 """Films of a run: the frames, and the encoders. Measures nothing."""
 
-__all__ = ["encode", "film"]
+__all__ = ["encode", "film", "layout"]

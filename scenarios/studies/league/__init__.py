@@ -3,4 +3,4 @@
 Knows no single law, but for its citations and horizons: what it says of each is declared by the law or measured.
 """
 
-__all__ = ["beside", "citations", "ends", "entries", "ideal", "measure", "picture", "report"]
+__all__ = ["beside", "citations", "ends", "entries", "ideal", "measure", "noise", "picture", "report"]
