@@ -22,14 +22,15 @@ TURN = 2.0 * np.pi
 def signed_angle(vertex: ArrayLike, a: ArrayLike, b: ArrayLike) -> Real:
     """alpha(vertex; a, b) in [0, 2 pi), radians, of points (..., 2) that broadcast (paper, Section 2.1).
 
-    NaN where ``a`` or ``b`` coincides with the vertex: the angle does not exist there.
+    NaN where ``a`` or ``b`` coincides with the vertex: the angle does not exist there. An angle has the same bits alone
+    and among others, which numpy's products of complex arrays have not.
     """
-    v = as_complex(vertex)
-    ray_a, ray_b = as_complex(a) - v, as_complex(b) - v
-    turn = ray_b * np.conj(ray_a)
-    angle = np.mod(np.angle(turn), TURN)
+    v, p, q = (np.asarray(points, dtype=np.float64) for points in (vertex, a, b))
+    ax, ay, bx, by = p[..., 0] - v[..., 0], p[..., 1] - v[..., 1], q[..., 0] - v[..., 0], q[..., 1] - v[..., 1]
+    dot, cross = bx * ax + by * ay, by * ax - bx * ay
+    angle = np.mod(np.arctan2(cross, dot), TURN)
     angle = np.where(angle >= TURN, 0.0, angle)  # mod of a tiny negative number rounds up to 2 pi itself
-    return np.where(turn == 0.0, np.nan, angle)
+    return np.where((dot == 0.0) & (cross == 0.0), np.nan, angle)
 
 
 def wrap(angle: ArrayLike) -> Real:

@@ -7,8 +7,6 @@ axis, two columns of points for instance, would make a sweep compare all pairs; 
 proportional to the number of points it gives way to the randomised grid of Golin, Raman, Schwarz and Smid (1995), whose
 expected time is linear for whatever crowd. All ways give the same pair: of several equally close the first in the order
 of rows.
-
-Everything that numba compiles is in this one file, see :mod:`robots.safety.kernel`.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 _DISPATCHER = type(njit(lambda: None))
 
-_made_of: dict[Any, frozenset[str]] = {}  # compiled functions: the files whose code is in them
+_made_of: dict[Any, frozenset[str]] = {}  # compiled functions: what their machine code depends on
 
 
 def compiled(function: F) -> F:
@@ -27,21 +27,22 @@ def compiled(function: F) -> F:
     """
     config: Any = numba_config
     given = config.CACHE_DIR
-    config.CACHE_DIR = _folder(function, given)
+    parts = ingredients(function)
+    config.CACHE_DIR = _folder(function, parts, given)
     try:
         made = njit(cache=True, error_model="numpy")(function)
     except RuntimeError:  # numba found no such folder
         made = njit(error_model="numpy")(function)
     finally:
         config.CACHE_DIR = given
-    _made_of[made] = _sources(function)
+    _made_of[made] = parts
     return cast(F, made)
 
 
 def inlined(function: F) -> F:
     """Compile a function into its callers, so that their loops over runs become vector instructions."""
     made = njit(inline="always", error_model="numpy")(function)
-    _made_of[made] = _sources(function)
+    _made_of[made] = ingredients(function)
     return cast(F, made)
 
 
@@ -55,29 +56,33 @@ def at_hand(function: Callable[..., Any]) -> bool:
     return index is not None and bool(index._load_index())
 
 
-def _sources(function: Callable[..., Any]) -> frozenset[str]:
-    """The files whose code a function may take in: its own, and those of all compiled functions that it can see."""
+def ingredients(function: Callable[..., Any]) -> frozenset[str]:
+    """What the machine code of a function may depend on, as text.
+
+    The content of its own file and those of all compiled functions that it can see, and the constants that it names,
+    which may stand in yet another file.
+    """
     seen: Mapping[str, Any] = function.__globals__
-    files = {function.__code__.co_filename}
+    parts = {_content(function.__code__.co_filename)}
+    for name in function.__code__.co_names:
+        if isinstance(value := seen.get(name), (int, float, tuple)):
+            parts.add(f"{name} = {value!r}")
     for thing in seen.values():
         if isinstance(thing, _DISPATCHER) and thing in _made_of:
-            files |= _made_of[thing]
-    return frozenset(files)
+            parts |= _made_of[thing]
+    return frozenset(parts)
 
 
 @cache
-def _content(file: str) -> bytes:
-    return hashlib.sha256(Path(file).read_bytes()).digest()
+def _content(file: str) -> str:
+    return hashlib.sha256(Path(file).read_bytes()).hexdigest()
 
 
-def _folder(function: Callable[..., Any], given: str) -> str:
-    """Where to keep a function: by a digest of its files, so that what another version left there is not even opened.
+def _folder(function: Callable[..., Any], parts: frozenset[str], given: str) -> str:
+    """Where to keep a function made of parts, so that what another version left there is not even opened.
 
     numba itself looks at the time of one file alone, and cannot read what names a class that has moved.
     """
-    files = sorted(_sources(function))
-    digest = hashlib.sha256()
-    for file in files:
-        digest.update(_content(file))
+    digest = hashlib.sha256("\n".join(sorted(parts)).encode())
     base = Path(given) if given else Path(function.__code__.co_filename).parent / "__pycache__"
     return str(base / f"compiled-{digest.hexdigest()[:12]}")

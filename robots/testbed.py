@@ -119,7 +119,7 @@ def separation(centres: Real) -> Separation:
     one, other = (np.take_along_axis(centres, pairs[:, k, None, None], axis=1)[:, 0] for k in (0, 1))
     with np.errstate(invalid="ignore"):  # a state that is not finite has no separation
         gap = one - other
-    return Separation(np.abs(np.ascontiguousarray(gap).view(np.complex128)[:, 0]), pairs)
+    return Separation(np.hypot(gap[:, 0], gap[:, 1]), pairs)
 
 
 def _by_all_pairs(points: Real) -> NDArray[np.intp]:

@@ -18,7 +18,7 @@ from scenarios.measures.result import result
 from scenarios.recording import file, viewer
 from scenarios.recording.aside import Encoder
 from scenarios.report.result import print_result
-from scenarios.simulation.compiling import compile_filter
+from scenarios.simulation.compiling import compile_for
 from scenarios.simulation.loop import simulate
 from scenarios.simulation.trajectory import Trajectory
 from scenarios.storage import run_folder
@@ -58,7 +58,7 @@ def run_to_folder(
     folder = out or run_folder.default_path(experiment.file.name, experiment.plant, seed)
     with run_folder.writing(folder) as scratch, Encoder() if recorded else nullcontext() as encoder:
         view = _open_view(experiment, seed, live, console)
-        compile_filter(experiment.safety)
+        compile_for(experiment)
         with progress_bar(console, experiment.file.name) as advance:
             trajectory = simulate(experiment, seed, advance, view)
         metrics = measure(experiment, trajectory)

@@ -11,8 +11,9 @@ from pathlib import Path
 import numba
 import pytest
 
-from robots.compiled import at_hand, compiled
-from robots.safety import kernel
+from robots.compiled import at_hand, compiled, ingredients
+from robots.safety.step import filter_step
+from scenarios.definition.experiment import open_experiment
 from scenarios.simulation import compiling
 
 NOWHERE = """
@@ -20,9 +21,9 @@ import warnings
 from numba.core import caching
 caching.CacheImpl._locator_classes = []  # as numba finds them: nothing can be written
 warnings.simplefilter("error")
-from robots.safety import kernel, solver
+from robots.safety import solver, step
 from robots.compiled import at_hand
-print(at_hand(kernel.step), solver.within_wheels(0.3, 0.0, 0.0, 0.0, 0.2, 2.2))
+print(at_hand(step.filter_step), solver.within_wheels(0.3, 0.0, 0.0, 0.0, 0.2, 2.2))
 """
 
 
@@ -53,9 +54,9 @@ def test_machine_code_is_at_hand_once_a_function_was_called() -> None:
 def test_one_word_announces_what_takes_seconds_and_nothing_else_does(
     ready: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("robots.compiled.at_hand", lambda function: function is kernel.step and ready)
+    monkeypatch.setattr("robots.compiled.at_hand", lambda function: function is filter_step and ready)
     for name in ("none", "centralised", "decentralised"):
-        compiling.compile_filter(name)
+        compiling.compile_for(open_experiment("law-distance", (f"safety.filter='{name}'",)))
     assert capsys.readouterr() == ("", "" if ready else "formation: compiling, once\n")
 
 
@@ -79,3 +80,14 @@ def test_without_a_home_a_run_with_its_figures_says_nothing_on_the_side(tmp_path
     )
     assert (done.returncode, done.stderr) == (1, "")
     assert (tmp_path / "run" / "figure-motion.png").is_file()
+
+
+def test_machine_code_is_made_of_the_constants_that_it_names() -> None:
+    """A function is compiled anew where a constant changes that another file keeps."""
+    source = compile("def there(x):\n    return LIMIT * x\n", str(Path(__file__)), "exec")
+    parts = []
+    for limit in (1.0, 1.0, 2.0):
+        seen: dict = {"LIMIT": limit}
+        exec(source, seen)
+        parts.append(ingredients(seen["there"]))
+    assert parts[0] == parts[1] != parts[2]

@@ -11,10 +11,16 @@ from robots.arena import Arena
 from robots.drive import DifferentialDrive
 from robots.nid import NearIdentityDiffeomorphism
 from robots.obstacles import Obstacle, pack
-from robots.safety import kernel
 from robots.safety.barrier import FilterSettings
+from robots.safety.crowd import LARGE
 from robots.safety.protocol import BLOCKERS, Noise, Real
-from robots.safety.rows import constants
+from robots.safety.rows import Noise as Measured
+from robots.safety.rows import Things, constants, things
+from robots.safety.step import filter_step
+from robots.worlds import lanes
+from robots.worlds.lanes import COS, GX, NOW, PX, SEEN_X, UX, VX, Senses
+
+_LATE = Senses(PX, COS, SEEN_X)
 
 
 class DecentralisedFilter:
@@ -45,21 +51,19 @@ class DecentralisedFilter:
         settings: FilterSettings,
         arena: Arena | None = None,
     ) -> None:
-        self._constants = constants(settings, drive, nid, shape[-1])
-        self._walls = np.empty((0, 3)) if arena is None else arena.wall_planes
-        self._obstacles = pack(() if arena is None else arena.obstacles)
-        batch = (int(np.prod(shape[:-1])), shape[-1])
-        self._silence = np.empty((*batch, 0, 2))
-        self.intervention = np.zeros(shape)
-        self.relaxation = np.zeros(shape)
-        self.blockers: NDArray[np.int64] = np.full((*shape, BLOCKERS), -1, dtype=np.int64)
-        self.stuck = np.zeros(shape)
-        self._side = np.ones(batch)
-        self._batch = batch
+        n, runs = shape[-1], int(np.prod(shape[:-1]))
+        self._shape = shape
+        self._constants = constants(settings, drive, nid, n)
+        self._things = things(arena)
+        together = 1 if n > LARGE else runs  # a large crowd is searched run by run
+        sizes = [min(together, runs - first) for first in range(0, runs, max(together, 1))]
+        self._states = [lanes.at_rest(n, size) for size in sizes]
+        self._blockers = [np.full((n, size, BLOCKERS), -1, dtype=np.int32) for size in sizes]
+        self._tell()
 
     def avoid(self, obstacles: Sequence[Obstacle]) -> None:
         """See :class:`robots.safety.SafetyFilter`."""
-        self._obstacles = pack(obstacles)
+        self._things = Things(self._things.walls, *pack(obstacles))
 
     def filter(
         self,
@@ -75,29 +79,32 @@ class DecentralisedFilter:
 
         ``seen`` (..., n, 2) is where each robot was when the others sensed it, metres; where it is, if absent.
         """
-        u = np.empty(points.shape)
-        batch = (*self._batch, 2)
-        turns, offsets = self._silence, self._silence
-        if noise is not None:
-            full = (*self._batch, -1, 2)
-            turns, offsets = noise.turns.reshape(full), noise.offsets.reshape(full)
-        kernel.step(
-            points.reshape(batch),
-            (points if seen is None else seen).reshape(batch),
-            headings.reshape(batch),
-            feedback.reshape(batch),
-            common.reshape(batch),
-            self.stuck.reshape(self._batch),
-            self._side,
-            float(period),
-            self._constants,
-            self._walls,
-            *self._obstacles,
-            turns,
-            offsets,
-            u.reshape(batch),
-            self.intervention.reshape(self._batch),
-            self.relaxation.reshape(self._batch),
-            self.blockers.reshape(*self._batch, BLOCKERS),
-        )
-        return u
+        n = self._shape[-1]
+        given = {PX: points, COS: headings, GX: feedback, VX: common} | ({} if seen is None else {SEEN_X: seen})
+        u, first = np.empty((int(np.prod(self._shape[:-1])), n, 2)), 0
+        for state, blockers in zip(self._states, self._blockers, strict=True):
+            part = slice(first, first + state.shape[2])
+            for field, vectors in given.items():
+                state[field : field + 2] = vectors.reshape(-1, n, 2)[part].T
+            if noise is None:
+                silence = np.empty((state.shape[2], n, 0, 2))
+                measured = Measured(silence, silence)
+            else:
+                measured = Measured(*(each.reshape(len(u), n, -1, 2)[part] for each in (noise.turns, noise.offsets)))
+            senses = NOW if seen is None else _LATE
+            filter_step(state, blockers, float(period), senses, self._constants, self._things, measured)
+            u[part] = state[UX : UX + 2].T
+            first = part.stop
+        self._tell()
+        return u.reshape(points.shape)
+
+    def _tell(self) -> None:
+        """Say what the last period has left in the states."""
+        self.intervention, self.relaxation = self._told(lanes.INTERVENTION), self._told(lanes.RELAXATION)
+        self.stuck = self._told(lanes.STUCK)
+        each = [blockers.transpose(1, 0, 2) for blockers in self._blockers]
+        self.blockers: NDArray[np.int32] = np.concatenate(each).reshape(*self._shape, BLOCKERS)
+
+    def _told(self, field: int) -> Real:
+        """A field of the states, (..., n)."""
+        return np.concatenate([state[field].T for state in self._states]).reshape(self._shape)

@@ -86,7 +86,7 @@ class JointFilter(ABC):
     def __init__(self, shape: tuple[int, ...]) -> None:
         self.intervention = np.zeros(shape)
         self.relaxation = np.zeros(shape)
-        self.blockers: NDArray[np.int64] = np.full((*shape, BLOCKERS), -1, dtype=np.int64)
+        self.blockers: NDArray[np.int32] = np.full((*shape, BLOCKERS), -1, dtype=np.int32)
         self.stuck = np.zeros(shape)
         self._runs, self._n = int(np.prod(shape[:-1])), shape[-1]
 

@@ -49,7 +49,7 @@ class SafetyFilter(Protocol):
 
     intervention: Real
     relaxation: Real
-    blockers: NDArray[np.int64]
+    blockers: NDArray[np.int32]
     stuck: Real
 
     def filter(

@@ -17,14 +17,15 @@ from collections.abc import Sequence
 
 import numpy as np
 import pymunk
-from pymunk import batch
 
 from robots.arena import Arena
 from robots.drive import Saturation
-from robots.model import Chassis, RobotModel
+from robots.model import Chassis as Box
+from robots.model import RobotModel
 from robots.nid import NearIdentityDiffeomorphism, mapped
-from robots.worlds.kinematic import arc_chord
-from robots.worlds.protocol import NOTHING, Controller, Index, Real
+from robots.worlds.bodies import Chassis, move
+from robots.worlds.chipmunk import BODY_ANGLE, bodies_of, observe
+from robots.worlds.protocol import Controller, Index, Real
 
 SUBSTEPS = 4
 """Solver steps per control period; keeps the deepest overlap of two chassis near 2 mm."""
@@ -32,19 +33,14 @@ SUBSTEPS = 4
 WALL_THICKNESS = 0.05
 """Metres; the inner faces of the walls are the sides of the arena."""
 
-_STATE = (
-    batch.BodyFields.POSITION | batch.BodyFields.ANGLE | batch.BodyFields.VELOCITY | batch.BodyFields.ANGULAR_VELOCITY
-)
-_STATE_WIDTH = 6
-_BODIES = batch.ArbiterFields.BODY_A_ID | batch.ArbiterFields.BODY_B_ID
-_COMMAND = batch.BodyFields.VELOCITY | batch.BodyFields.ANGULAR_VELOCITY
-
 
 class Contact:
     """Differential-drive bodies in a pymunk space.
 
     Attributes:
         space: the pymunk space; bodies 0..n-1 are the chassis, n..2n-1 their kinematic partners.
+        bodies: the same for compiled code; the state as it was observed last.
+        chassis: the robots on them, likewise.
     """
 
     def __init__(
@@ -55,17 +51,15 @@ class Contact:
         saturation: Saturation = "scale",
         arena: Arena | None = None,
         substeps: int = SUBSTEPS,
-        bodies: Sequence[Chassis] | None = None,
+        bodies: Sequence[Box] | None = None,
     ) -> None:
         self.poses = np.array(poses, dtype=np.float64)
         if self.poses.ndim != 2:
             raise ValueError(f"the pymunk world holds one run, poses of shape (n, 3), got {self.poses.shape}")
         self._n = n = len(self.poses)
-        self._substeps = substeps
         self._drive, self._saturation = robot.drive, saturation
         chassis = [robot.chassis] * n if bodies is None else list(bodies)
         self._l = nid.ahead
-        self._ahead = np.array([[each.centre_offset] for each in chassis])
         self._to_wheels = (robot.drive.to_wheels @ nid.to_twist).swapaxes(-1, -2)
         self._to_twist = robot.drive.to_twist.T
         self.space = _space(self.poses, robot, chassis, arena)
@@ -73,14 +67,10 @@ class Contact:
         self.space.add(*self._obstacles)
         self._sliding = np.array([[2.0 * each.traction_limit / each.mass] for each in chassis])
         self.wheel_speeds = np.zeros((n, 2))
-        self._row_of = {body.id: row for row, body in enumerate(list(self.space.bodies)[:n])}
-        self._state, self._arbiters = batch.Buffer(), batch.Buffer()
-        # The batch also visits the static body of walls and obstacles, last. Without a row of its own, which stays 0,
-        # it would be given as its velocity whatever lies in memory behind this array.
-        self._command = np.zeros((2 * n + 1, 3))
-        self._command_buffer = batch.Buffer()
-        self._command_buffer.set_float_buf(self._command)
-        self._untouched = np.full(n, NOTHING)
+        self.bodies, self._kept = bodies_of(self.space, list(self.space.bodies)[:n])
+        ahead = np.array([each.centre_offset for each in chassis])
+        self.chassis = Chassis(self.bodies, ahead, substeps, np.zeros((n, 2)))
+        observe(self.bodies)
         self._observe()
 
     @property
@@ -94,17 +84,8 @@ class Contact:
 
     def move(self, twist: Real, period: float) -> None:
         """Advance by a period, seconds, while the wheels command twists (n, 2) of the axles, m/s and rad/s."""
-        drive = self._command[self._n : -1]
-        dt = period / self._substeps
-        # The partner moves along the chord of the arc that the wheels command over a whole period. The solver moves
-        # bodies before it gives them new velocities, so that arc begins one substep from now.
-        theta = self.poses[:, 2] + dt * self._command[: self._n, 2]
-        chord = arc_chord(twist[:, 0], theta, period * twist[:, 1])
-        drive[:, :2] = chord[:, None].view(np.float64)
-        drive[:, 2] = twist[:, 1]
-        batch.set_space_bodies(self.space, _COMMAND, self._command_buffer)
-        for _ in range(self._substeps):
-            self.space.step(dt)
+        self.chassis.twist[:] = twist
+        move(self.chassis, period)
         self._observe()
 
     def push(self, displacement: Real) -> None:
@@ -112,7 +93,7 @@ class Contact:
         distance = np.linalg.norm(displacement, axis=-1, keepdims=True)
         speed = np.sqrt(self._sliding * distance)
         direction = np.divide(displacement, distance, out=np.zeros_like(displacement), where=distance > 0.0)
-        self._command[: self._n, :2] += speed * direction
+        self.bodies.command[: self._n, :2] += speed * direction
 
     def stand(self, there: Sequence[bool]) -> None:
         present = set(self.space.shapes)
@@ -123,37 +104,21 @@ class Contact:
                 self.space.remove(shape)
 
     def _observe(self) -> None:
-        self._state.clear()
-        batch.get_space_bodies(self.space, _STATE, self._state)
-        chassis = np.frombuffer(self._state.float_buf()).reshape(-1, _STATE_WIDTH)[: self._n]
-        self._command[: self._n] = chassis[:, 3:]  # written back unchanged with the next command
-        theta = chassis[:, 2]
+        chassis = self.bodies.state[: self._n]
+        theta = chassis[:, BODY_ANGLE]
         self.headings = np.exp(1j * theta)[:, None].view(np.float64)
-        axle = chassis[:, :2] - self._ahead * self.headings
+        axle = chassis[:, :2] - self.chassis.ahead[:, None] * self.headings
         self.poses[:, :2] = axle
         self.poses[:, 2] = theta
         self.points = axle + self._l * self.headings
-        self._arbiters.clear()
-        batch.get_space_arbiters(self.space, _BODIES, self._arbiters)
-        bodies = memoryview(self._arbiters.int_buf()).cast("P")
-        self.contacts = self._touched(bodies.tolist()) if len(bodies) else self._untouched
-
-    def _touched(self, bodies: list[int]) -> Index:
-        """(n,) whom each robot touches, from the bodies of all contacts, two of each."""
-        n, rows = self._n, [self._row_of.get(body, self._n) for body in bodies]  # n: of walls and obstacles
-        first = [n + 1] * (n + 1)
-        for one, other in zip(rows[::2], rows[1::2], strict=True):
-            first[one] = min(first[one], other)
-            first[other] = min(first[other], one)
-        touched = np.array(first[:n])
-        return np.where(touched > n, NOTHING, touched)
+        self.contacts: Index = self.bodies.touched.copy()
 
 
-def _space(poses: Real, robot: RobotModel, bodies_of: Sequence[Chassis], arena: Arena | None) -> pymunk.Space:
+def _space(poses: Real, robot: RobotModel, boxes: Sequence[Box], arena: Arena | None) -> pymunk.Space:
     space = pymunk.Space()
     space.collision_slop = 1e-4  # the default of 0.1 m would let robots sink into each other by their own size
     bodies = []
-    for (x, y, theta), chassis in zip(poses.tolist(), bodies_of, strict=True):
+    for (x, y, theta), chassis in zip(poses.tolist(), boxes, strict=True):
         ahead = chassis.centre_offset
         body = pymunk.Body(chassis.mass, chassis.inertia)
         body.position = x + ahead * np.cos(theta), y + ahead * np.sin(theta)
@@ -162,7 +127,7 @@ def _space(poses: Real, robot: RobotModel, bodies_of: Sequence[Chassis], arena: 
         box.friction = chassis.body_friction
         space.add(body, box)
         bodies.append(body)
-    for body, chassis in zip(bodies, bodies_of, strict=True):
+    for body, chassis in zip(bodies, boxes, strict=True):
         traction, ahead = chassis.traction_limit, chassis.centre_offset
         partner = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
         partner.position = body.local_to_world((-ahead, 0.0))

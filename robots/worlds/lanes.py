@@ -17,17 +17,19 @@ from numpy.typing import NDArray
 from robots.compiled import compiled, inlined
 from robots.drive import DifferentialDrive, Saturation
 from robots.nid import NearIdentityDiffeomorphism
+from robots.worlds.protocol import NOTHING
 
 Real = NDArray[np.float64]
 
-X, Y, THETA, PX, PY, LEFT, RIGHT, INTERVENTION, RELAXATION, STUCK = range(10)
-"""What is recorded: pose of the axle (m, rad), projected point (m), wheel speeds of the last period (rad/s), and what
-the safety filter says of it (m/s, m/s, s)."""
-RECORDED = 10
-COS, SIN, SIDE, GX, GY, VX, VY, UX, UY, SEEN_X, SEEN_Y = range(RECORDED, RECORDED + 11)
-"""What else a state holds: heading; the filter's side; in the body frame, m/s, the law, v_r and the command; and where
-others see a robot late, metres."""
-FIELDS = RECORDED + 11
+X, Y, THETA, PX, PY, LEFT, RIGHT, INTERVENTION, RELAXATION, STUCK, WX, WY, UX, UY, CONTACT = range(15)
+"""What is recorded: pose of the axle (m, rad), projected point (m); of the last period the wheel speeds (rad/s), what
+the safety filter says (m/s, m/s, s), in the body frame, m/s, the wish of law and v_r and the command, and the row of
+whom the robot touched."""
+RECORDED = 15
+COS, SIN, SIDE, GX, GY, VX, VY, SEEN_X, SEEN_Y = range(RECORDED, RECORDED + 9)
+"""What else a state holds: heading; the filter's side; in the body frame, m/s, the law and v_r; and where others see a
+robot late, metres."""
+FIELDS = RECORDED + 9
 
 
 class Senses(NamedTuple):
@@ -57,33 +59,40 @@ class Wheels(NamedTuple):
     Attributes:
         radius: of a wheel, metres.
         half_base: half the distance between the wheels, metres.
-        limit: of either wheel's speed, rad/s.
-        projection: l, metres.
+        limits: (n,) of either wheel's speed of each robot, rad/s.
+        projections: (n,) l of each, metres.
         saturation: :data:`UNLIMITED`, :data:`SCALE` or :data:`CLIP`.
     """
 
     radius: float
     half_base: float
-    limit: float
-    projection: float
+    limits: Real
+    projections: Real
     saturation: int
 
 
-def wheels(drive: DifferentialDrive, nid: NearIdentityDiffeomorphism, saturation: Saturation | None) -> Wheels:
-    """The drive for :func:`roll`; ``saturation`` None for wheels without limit."""
+def wheels(drive: DifferentialDrive, nid: NearIdentityDiffeomorphism, saturation: Saturation | None, n: int) -> Wheels:
+    """The drives of n robots for :func:`roll`; ``saturation`` None for wheels without limit."""
     mode = UNLIMITED if saturation is None else _SATURATION[saturation]
-    half_base = drive.base_length / 2.0
-    return Wheels(drive.wheel_radius, half_base, float(drive.wheel_speed_limit), float(nid.projection_distance), mode)
+    limits, projections = (np.array(np.broadcast_to(a, n)) for a in (drive.wheel_speed_limit, nid.projection_distance))
+    return Wheels(drive.wheel_radius, drive.base_length / 2.0, limits, projections, mode)
 
 
-def new_state(poses: Real, ahead: float) -> Real:
-    """The state (FIELDS, n, L) of runs at rest at the poses (L, n, 3), projected points ``ahead`` of them, metres."""
-    state = np.zeros((FIELDS, poses.shape[1], poses.shape[0]))
+def at_rest(n: int, runs: int) -> Real:
+    """The state (FIELDS, n, L) of n robots in so many runs, all at the origin."""
+    state = np.zeros((FIELDS, n, runs))
+    state[COS] = state[SIDE] = 1.0
+    state[CONTACT] = NOTHING
+    return state
+
+
+def new_state(poses: Real, ahead: float | Real) -> Real:
+    """The state of runs at rest at the poses (L, n, 3), projected points ``ahead`` of them, metres, (n, 1) of each."""
+    state = at_rest(poses.shape[1], poses.shape[0])
     state[[X, Y, THETA]] = np.moveaxis(poses, (0, 1, 2), (2, 1, 0))
     state[COS], state[SIN] = np.cos(state[THETA]), np.sin(state[THETA])
     state[PX] = state[X] + ahead * state[COS]
     state[PY] = state[Y] + ahead * state[SIN]
-    state[SIDE] = 1.0
     return state
 
 
@@ -111,19 +120,28 @@ def sine_cosine(angle: float) -> tuple[float, float]:
     return one, other
 
 
+@inlined
+def wheel_speeds(ux: float, uy: float, wheels: Wheels, i: int) -> tuple[float, float]:
+    """Wheel speeds, rad/s, within the limits of robot i for a velocity of its projected point, m/s."""
+    limit, v = wheels.limits[i], ux / wheels.radius
+    turning = uy / wheels.projections[i] * wheels.half_base / wheels.radius
+    left, right = v - turning, v + turning
+    if wheels.saturation == SCALE:
+        share = limit / max(abs(left), abs(right), limit)
+        left, right = left * share, right * share
+    elif wheels.saturation == CLIP:
+        left, right = min(max(left, -limit), limit), min(max(right, -limit), limit)
+    return left, right
+
+
 @compiled
 def roll(state: Real, wheels: Wheels, period: float) -> None:
     """Drive all robots by their commands UX, UY for one period, seconds: NID, wheels, exact arcs."""
-    r, half_base, limit, ahead = wheels.radius, wheels.half_base, wheels.limit, wheels.projection
+    r, half_base = wheels.radius, wheels.half_base
     for i in range(state.shape[1]):
+        ahead = wheels.projections[i]
         for m in range(state.shape[2]):
-            v, turning = state[UX, i, m] / r, state[UY, i, m] / ahead * half_base / r
-            left, right = v - turning, v + turning
-            if wheels.saturation == SCALE:
-                share = limit / max(abs(left), abs(right), limit)
-                left, right = left * share, right * share
-            elif wheels.saturation == CLIP:
-                left, right = min(max(left, -limit), limit), min(max(right, -limit), limit)
+            left, right = wheel_speeds(state[UX, i, m], state[UY, i, m], wheels, i)
             state[LEFT, i, m], state[RIGHT, i, m] = left, right
             half = 0.25 * period * r / half_base * (right - left)  # of the turn
             length = 0.5 * period * r * (right + left)

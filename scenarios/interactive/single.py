@@ -18,7 +18,7 @@ from scenarios.interactive.frames import pandas
 from scenarios.measures.metrics import Metrics, measure
 from scenarios.measures.result import result
 from scenarios.measures.series import series
-from scenarios.simulation.compiling import compile_filter
+from scenarios.simulation.compiling import compile_for
 from scenarios.simulation.loop import simulate
 from scenarios.simulation.trajectory import Trajectory
 
@@ -181,6 +181,6 @@ def run(
         raise InputError(f"seed: expected an integer from 0, got {seed}")
     experiment = open_experiment(str(scenario), changed(tuple(changes), plant, safety), duration)
     require_safety(experiment, safety)
-    compile_filter(experiment.safety)
+    compile_for(experiment)
     trajectory = simulate(experiment, seed)
     return Run(experiment, seed, trajectory, measure(experiment, trajectory))

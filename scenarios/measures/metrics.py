@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from robots.model import COLLISION_CENTRE
 from robots.testbed import Separation, Verdict, collision_centres, judge, separation
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.clearance import Clearance, clearance, standing_at
@@ -83,7 +84,7 @@ def measure(experiment: Experiment, trajectory: Trajectory) -> Metrics:
     error_sum = np.abs(errors).sum(axis=-1)
     axle_sum = np.abs(axle_errors).sum(axis=-1)
     tracking = track(experiment, trajectory)
-    near = separation(collision_centres(trajectory.poses))
+    near = separation(checked(experiment, trajectory))
     window = trailing(trajectory.t, errors) if experiment.noisy else None
     judged = error_sum if window is None else np.abs(window.mean).sum(axis=-1)
     verdict = judge(
@@ -110,6 +111,17 @@ def measure(experiment: Experiment, trajectory: Trajectory) -> Metrics:
         phases=_phase_ends(experiment, trajectory, errors, axle_errors, tracking),
         outcome=_outcome(experiment, judged, verdict, tracking, trajectory),
     )
+
+
+def ahead_as_checked(experiment: Experiment) -> bool:
+    """Whether the testbed checks the very points that the law steers: robots whose l is the testbed's."""
+    ahead = np.all(experiment.fleet.nid.projection_distance == COLLISION_CENTRE)
+    return experiment.plant != "single_integrator" and bool(ahead)
+
+
+def checked(experiment: Experiment, trajectory: Trajectory) -> Real:
+    """(T, n, 2) the points that the testbed checks for collisions, metres."""
+    return trajectory.points if ahead_as_checked(experiment) else collision_centres(trajectory.poses)
 
 
 @np.errstate(over="ignore", invalid="ignore")  # a diverged run is an outcome, not a warning

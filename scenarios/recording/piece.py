@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.testbed import Separation, collision_centres, separation
+from robots.testbed import Separation, separation
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.clearance import Clearance, clearance
-from scenarios.measures.metrics import Metrics
+from scenarios.measures.metrics import Metrics, checked
 from scenarios.simulation.trajectory import Trajectory
 
 Real = NDArray[np.float64]
@@ -93,6 +93,6 @@ def rows(experiment: Experiment, trajectory: Trajectory, first: int, end: int) -
         part,
         errors,
         np.abs(errors).sum(axis=-1),
-        separation(collision_centres(part.poses)),
+        separation(checked(experiment, part)),
         clearance(experiment, part),
     )

@@ -45,8 +45,8 @@ def print_experiment(console: Console, experiment: Experiment, seed: int) -> Non
     for remark in remarks(experiment, seed):
         console.print(escape(remark), style="bold")
     reason = unable(experiment)
-    how = "whole periods of many runs are one compiled call" if reason is None else f"stepped by Python, {reason}"
-    console.print(escape(f"\nsweep: {how}"))
+    how = "compiled as a whole" if reason is None else f"stepped by Python, {reason}"
+    console.print(escape(f"\ncontrol period: {how}"))
     table = new_table("angle", "target (deg)")
     angles = zip(experiment.angle_names, np.degrees(experiment.target_angles), strict=True)
     for name, value in islice(angles, MOST_LISTED):

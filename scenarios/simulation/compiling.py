@@ -1,54 +1,50 @@
-"""The first run on a machine compiles the safety filter, which takes seconds: say so, once, before the work spreads."""
+"""The first run on a machine compiles what periods call, which takes seconds: say so, once, before work spreads."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
+from typing import Any
 
-import numpy as np
-
-from robots import GTERNAL, NearIdentityDiffeomorphism
-from robots.model import COLLISION_CENTRE, CONTROL_PERIOD
-from robots.safety import FilterSettings, make_filter
-from scenarios.definition.schema import Scenario
+from scenarios.definition.experiment import Experiment, build
+from scenarios.simulation.compiled.ability import unable
+from scenarios.simulation.loop import simulate
 
 ANNOUNCEMENT = "formation: compiling, once"
 """What stands on stderr before."""
 
 
-def compile_filter(name: str = "decentralised") -> None:
-    """Compile the filter ``name`` where no machine code of it is at hand; others have nothing to compile.
+def compile_for(experiment: Experiment, run: Callable[[], object] | None = None) -> None:
+    """Compile what the runs of an experiment need, where no machine code of it is at hand; many need nothing.
 
     Processes that are started afterwards find the machine code, where there is a folder to keep it in.
+
+    Args:
+        experiment: that is to run.
+        run: what compiles it, where it is more than a run of one control period.
     """
-    if name != "decentralised":
+    kernel = _kernel(experiment)
+    if kernel is None:
         return
     from robots.compiled import at_hand  # numba is loaded only where it is used
-    from robots.safety import kernel
 
-    if at_hand(kernel.step):
+    if at_hand(kernel):
         return
     print(ANNOUNCEMENT, file=sys.stderr, flush=True)
-    still = np.zeros((1, 2))
-    ahead = np.array([[1.0, 0.0]])
-    nid = NearIdentityDiffeomorphism(COLLISION_CENTRE)
-    safety = make_filter(name, (1,), GTERNAL.drive, nid, FilterSettings())
-    if safety is not None:
-        safety.filter(still, ahead, still, still, CONTROL_PERIOD)
-
-
-def compile_whole(plant: str, run: Callable[[], object]) -> None:
-    """Compile the whole period of a plant, and what looks at it, by a ``run``, where no machine code is at hand."""
-    from robots.compiled import at_hand
-    from scenarios.simulation.compiled import period
-
-    if not at_hand(period.integrate if plant == "single_integrator" else period.advance):
-        print(ANNOUNCEMENT, file=sys.stderr, flush=True)
+    if run is None:
+        simulate(build(experiment.file, experiment.scenario.plant.control_period_s))
+    else:
         run()
 
 
-def compile_filters(scenarios: Iterable[Scenario]) -> None:
-    """:func:`compile_filter` for all of them; the single integrator has points, which no filter keeps apart."""
-    for scenario in scenarios:
-        if scenario.plant.name != "single_integrator":
-            compile_filter(scenario.safety.filter)
+def _kernel(experiment: Experiment) -> Callable[..., Any] | None:
+    """The compiled function that takes the longest to compile of those that a run calls."""
+    if unable(experiment) is None:
+        from scenarios.simulation.compiled import period
+
+        return period.integrate if experiment.plant == "single_integrator" else period.advance
+    if experiment.safety == "decentralised":
+        from robots.safety.step import filter_step
+
+        return filter_step
+    return None

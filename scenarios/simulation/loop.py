@@ -1,8 +1,12 @@
-"""The loop: sense, law, (safety), NID, drive, world, once per control period, for one run or a batch of runs."""
+"""The loop: sense, law, (safety), NID, drive, world, once per control period, for one run or a batch of runs.
+
+Where :mod:`scenarios.simulation.compiled` can do all that an experiment asks for, it advances the runs; what it cannot
+do is stepped here, by a call of Python for every part of every period.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,11 +15,12 @@ from robots import make_world
 from robots.worlds import NOTHING, World
 from scenarios.definition.events.event import OBSTACLE
 from scenarios.definition.experiment import Experiment
+from scenarios.simulation.compiled.ability import together, unable
 from scenarios.simulation.controller import Controller
 from scenarios.simulation.guard import SafetyRecord
 from scenarios.simulation.outages import Outages, pushes, standing
 from scenarios.simulation.schedule import Part, schedule
-from scenarios.simulation.trajectory import Trajectory
+from scenarios.simulation.trajectory import OnPeriod, OnState, Trajectory
 
 TURN_OF_STEP = 0.5
 """1/s: the largest mu, how fast the formation turns or scales, for which a step a period is enough."""
@@ -28,8 +33,8 @@ RATE_SAMPLES = 4096
 def simulate(
     experiment: Experiment,
     seed: int | Sequence[int] = 0,
-    on_period: Callable[[int, int], None] | None = None,
-    on_state: Callable[[Trajectory, int], None] | None = None,
+    on_period: OnPeriod | None = None,
+    on_state: OnState | None = None,
 ) -> Trajectory:
     """Run an experiment.
 
@@ -43,6 +48,25 @@ def simulate(
     Returns:
         The recorded states; cut short after the first state that is not finite.
     """
+    if unable(experiment) is not None:
+        return step_by_step(experiment, seed, on_period, on_state)
+    from scenarios.simulation.compiled.record import record, side_by_side  # loads numba
+
+    if isinstance(seed, int):
+        return record(experiment, [seed], on_period, on_state, alone=True)
+    if together(experiment):
+        return record(experiment, seed, on_period, on_state)
+    return side_by_side([record(experiment, [each], on_period, on_state) for each in seed])
+
+
+@np.errstate(over="ignore", invalid="ignore")
+def step_by_step(
+    experiment: Experiment,
+    seed: int | Sequence[int] = 0,
+    on_period: OnPeriod | None = None,
+    on_state: OnState | None = None,
+) -> Trajectory:
+    """The same by calls of Python, whatever the experiment is."""
     seeds = [seed] if isinstance(seed, int) else list(seed)
     batch = () if isinstance(seed, int) else (len(seeds),)
     generators = [np.random.default_rng(s) for s in seeds]

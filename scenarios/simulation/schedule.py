@@ -82,7 +82,10 @@ def count_periods(experiment: Experiment) -> int:
     return sum(part.count for part in schedule(experiment))
 
 
-def times(experiment: Experiment) -> NDArray[np.float64]:
-    """(T,) when each control period of a run ends, seconds, and its start before them."""
-    ends = [part.start + part.duration * (np.arange(1, part.count + 1) / part.count) for part in schedule(experiment)]
-    return np.concatenate([[0.0], *ends])
+def times(experiment: Experiment) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+    """(T,) when each control period of a run ends, seconds, its start before them; and the phase (T,) of each."""
+    ends, phases = [np.zeros(1)], [np.zeros(1, dtype=np.intp)]
+    for part in schedule(experiment):
+        ends.append(part.start + part.duration * (np.arange(1, part.count + 1) / part.count))
+        phases.append(np.full(part.count, part.index, dtype=np.intp))
+    return np.concatenate(ends), np.concatenate(phases)

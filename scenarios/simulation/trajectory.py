@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
 
@@ -70,3 +71,10 @@ class Trajectory:
         """
         states = {field.name: getattr(self, field.name) for field in fields(self)}
         np.savez_compressed(path, angle_errors=angle_errors, **states)
+
+
+OnPeriod = Callable[[int, int], None]
+"""Called after a control period with the number of periods done and of all."""
+
+OnState = Callable[[Trajectory, int], None]
+"""Called after a control period with the trajectory, which has room for all, and the row of the newest state."""

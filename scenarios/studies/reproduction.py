@@ -16,7 +16,7 @@ from scenarios.documents import cell, markdown_table
 from scenarios.measures.metrics import measure
 from scenarios.measures.result import result, versions
 from scenarios.measures.tracking import predicted_ends
-from scenarios.simulation.compiling import compile_filter
+from scenarios.simulation.compiling import compile_for
 from scenarios.simulation.loop import simulate
 from scenarios.simulation.trajectory import Trajectory
 from scenarios.work.processes import run_all
@@ -77,7 +77,7 @@ def trials() -> list[Trial]:
 def reproduce(workers: int, on_progress: Callable[[int, int], None]) -> Results:
     """Run every trial."""
     queue = trials()
-    compile_filter()
+    compile_for(_open(queue[0]))
     results = {}
     for trial, found in zip(queue, run_all(run_trial, queue, workers), strict=True):
         results[trial] = found

@@ -41,7 +41,7 @@ CPU_LIMIT = 240
 """Seconds of processor time after which a mutant counts as noticed: it never ends."""
 
 QUIET = ["-q", "-x", "--no-header", "-p", "no:cacheprovider", "-m", "not slow"]
-KERNEL = "robots/safety/kernel.py"
+KERNEL = "robots/safety/step.py"
 
 
 class Watch:

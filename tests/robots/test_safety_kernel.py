@@ -8,8 +8,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from robots import GTERNAL, Arena, NearIdentityDiffeomorphism
+from robots.compiled import compiled
 from robots.obstacles import Obstacle, disc
-from robots.safety import FilterSettings, Noise, kernel, make_filter, solver
+from robots.safety import FilterSettings, Noise, make_filter, solver
+from robots.safety.step import bounded
 
 NID = NearIdentityDiffeomorphism(0.025)
 PERIOD = 0.033
@@ -28,6 +30,11 @@ odd = st.one_of(
 )
 vectors = st.lists(st.tuples(odd, odd), min_size=3, max_size=3).map(np.array)
 angles = st.lists(st.floats(-7.0, 7.0), min_size=3, max_size=3).map(np.array)
+
+
+@compiled
+def shortened(x: float, y: float) -> tuple[float, float]:
+    return bounded(x, y)
 
 
 def answer(
@@ -86,7 +93,7 @@ def test_the_law_is_scaled_onto_the_diamond_and_no_further_than_it_must(
 ) -> None:
     limit, weight = 0.2, 2.2
     y = share * (limit - abs(x)) / weight * 0.99
-    gx, gy = kernel._bounded(gx, gy)
+    gx, gy = shortened(gx, gy)
     s = solver.within_wheels(x, y, gx, gy, limit, weight)
     assert 0.0 <= s <= 1.0
     reached = abs(x + s * gx) + weight * abs(y + s * gy)
@@ -96,7 +103,7 @@ def test_the_law_is_scaled_onto_the_diamond_and_no_further_than_it_must(
 
 @given(x=finite, y=finite)
 def test_a_velocity_is_shortened_to_a_million_metres_per_second_without_turning(x: float, y: float) -> None:
-    bx, by = kernel._bounded(x, y)
+    bx, by = shortened(x, y)
     largest = max(abs(x), abs(y))
     if largest <= 1e6:
         assert (bx, by) == (x, y)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from robots.model import COLLISION_CENTRE
 from robots.testbed import COLLISION_DISTANCE, OBSTACLE_DISTANCE, collision_centres, fastest_allowed
 from scenarios.definition.experiment import Experiment
-from scenarios.measures.metrics import Outcome
+from scenarios.measures.metrics import Outcome, ahead_as_checked
 from scenarios.simulation.compiled.runs import Chunk
 from scenarios.simulation.schedule import schedule, times
 
@@ -34,6 +34,13 @@ class Achieved:
     violations: tuple[str, ...]
 
 
+def watchable(experiment: Experiment) -> bool:
+    """Whether a watch finds all that the row of a run holds: of equal robots with perfect sensors on an open floor."""
+    arena, equal = experiment.arena, np.ndim(experiment.fleet.drive.wheel_speed_limit) == 0
+    bounded = experiment.scenario.goal.distance_m is not None
+    return equal and not (experiment.noisy or experiment.events or arena.walls or arena.obstacles or bounded)
+
+
 class Watch:
     """Looks at states of runs (FIELDS, n, L) as they pass, and knows in the end what each run achieved.
 
@@ -48,7 +55,7 @@ class Watch:
         runs = state.shape[2]
         targets = experiment.target_angles
         self._experiment = experiment
-        self._t = times(experiment)
+        self._t, _ = times(experiment)
         self._angles = Angles(
             experiment.angles.triples.astype(np.int64),
             np.cos(targets),
@@ -67,7 +74,7 @@ class Watch:
         from scenarios.measures.online.watching import look
 
         rows, experiment = chunk.rows, self._experiment
-        centres = rows if _ahead_as_checked(experiment) else self._centred(rows)
+        centres = rows if ahead_as_checked(experiment) else self._centred(rows)
         look(rows, centres, chunk.first, self._angles, self._ground, self._seen)
         if experiment.arena.obstacles:
             from robots.worlds.lanes import PX, PY
@@ -118,11 +125,6 @@ class Watch:
             outcome = "rejected"
         settled = None if last == len(self._t) - 1 else float(self._t[last + 1])
         return Achieved(outcome, error_sum, axle_error_sum, settled, least, accepted, violations)
-
-
-def _ahead_as_checked(experiment: Experiment) -> bool:
-    """Whether the testbed checks the very points that the law steers: robots whose l is the testbed's."""
-    return experiment.plant != "single_integrator" and experiment.nid.projection_distance == COLLISION_CENTRE
 
 
 def _way(experiment: Experiment) -> float:

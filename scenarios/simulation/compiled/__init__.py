@@ -1,3 +1,3 @@
-"""Experiments whose whole control period is compiled: many runs at once. No measure, and no run that Python steps."""
+"""Experiments whose whole control period is compiled, one run or many. No measure, and no run that Python steps."""
 
-__all__ = ["ability", "period", "runs"]
+__all__ = ["ability", "period", "record", "runs"]

@@ -8,9 +8,12 @@ from typing import Any
 from formation.laws.angle import AngleLaw
 from scenarios.definition.experiment import Experiment
 
-PLANTS = ("single_integrator", "unicycle", "saturated")
+PLANTS = ("single_integrator", "unicycle", "saturated", "pymunk")
 
 FILTERS = ("none", "decentralised")
+
+MOST_TOGETHER = 64
+"""Robots of a run up to which runs advance side by side; larger ones search for neighbours, each by itself."""
 
 KNOWN = frozenset(
     {
@@ -22,6 +25,10 @@ KNOWN = frozenset(
         "agents.start",
         "agents.heading_deg",
         "agents.target",
+        "agents.robot.projection_distance_m",
+        "agents.robot.wheel_speed_limit_rad_s",
+        "agents.robot.length_m",
+        "agents.robot.width_m",
         "random_formation.agents",
         "random_formation.seed",
         "random_formation.radius_m",
@@ -69,6 +76,11 @@ KNOWN = frozenset(
 
 WHOLE = frozenset({"target.angles_deg", "communication.edges"})
 """Keys whose values are no tables of the schema."""
+
+
+def together(experiment: Experiment) -> bool:
+    """Whether its runs advance side by side."""
+    return experiment.plant != "pymunk" and experiment.n <= MOST_TOGETHER
 
 
 def unable(experiment: Experiment) -> str | None:

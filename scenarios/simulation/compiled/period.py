@@ -16,7 +16,8 @@ from formation.laws.angle_loop import Gains
 from robots.compiled import compiled
 from robots.safety.rows import Constants, Noise, Things
 from robots.safety.step import Code, filter_step
-from robots.worlds.lanes import COS, GX, GY, NOW, PX, PY, SIN, UX, UY, VX, VY, Wheels, X, Y, roll
+from robots.worlds.bodies import Chassis, shove
+from robots.worlds.lanes import COS, GX, GY, NOW, PX, PY, SIN, UX, UY, VX, VY, WX, WY, Wheels, X, Y, roll
 
 Real = NDArray[np.float64]
 
@@ -45,7 +46,14 @@ _feedback = compiled(angle_loop.feedback)
 
 @compiled
 def advance(
-    state: Real, rows: Real, blockers: Code, law: Gains, commands: Commands, guard: Guard, wheels: Wheels
+    state: Real,
+    rows: Real,
+    blockers: Code,
+    law: Gains,
+    commands: Commands,
+    guard: Guard,
+    wheels: Wheels,
+    chassis: Chassis,
 ) -> None:
     """As many control periods as ``rows`` has room for, of robots with wheels.
 
@@ -60,8 +68,11 @@ def advance(
             after = blockers[k % len(blockers)]
             filter_step(state, after, commands.period, NOW, guard.constants, guard.things, guard.noise)
         else:
-            _command(state)
-        roll(state, wheels, commands.period)
+            state[UX : UY + 1] = state[WX : WY + 1]
+        if chassis.substeps > 0:
+            shove(state, wheels, chassis, commands.period)
+        else:
+            roll(state, wheels, commands.period)
         rows[k] = state[: rows.shape[1]]
 
 
@@ -74,7 +85,7 @@ def integrate(state: Real, rows: Real, law: Gains, commands: Commands) -> None:
         start[:] = state[PX : PY + 1]
         for stage in range(4):
             _obey(state, law, commands)
-            _command(state)
+            state[UX : UY + 1] = state[WX : WY + 1]
             _turn_out(state, slope)
             if stage == 0:
                 total[:] = slope
@@ -98,15 +109,7 @@ def _obey(state: Real, law: Gains, commands: Commands) -> None:
     for i in range(state.shape[1]):
         for m in range(state.shape[2]):
             state[VX, i, m], state[VY, i, m] = vx * c[i, m] + vy * s[i, m], vy * c[i, m] - vx * s[i, m]
-
-
-@compiled
-def _command(state: Real) -> None:
-    """Command what is asked, as it is."""
-    for i in range(state.shape[1]):
-        for m in range(state.shape[2]):
-            state[UX, i, m] = state[GX, i, m] + state[VX, i, m]
-            state[UY, i, m] = state[GY, i, m] + state[VY, i, m]
+            state[WX, i, m], state[WY, i, m] = gx[i, m] + state[VX, i, m], gy[i, m] + state[VY, i, m]
 
 
 @compiled

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -16,6 +16,7 @@ from scenarios.definition.experiment import Experiment
 from scenarios.simulation.schedule import schedule
 
 if TYPE_CHECKING:
+    from robots.worlds.contact import Contact
     from scenarios.simulation.compiled.period import Commands
 
 Real = NDArray[np.float64]
@@ -52,6 +53,7 @@ class Runs:
         from formation.laws.angle_loop import gains  # numba is loaded only where it is used
         from robots.safety.rows import Noise, constants, things
         from robots.worlds import lanes
+        from robots.worlds.bodies import no_chassis
         from scenarios.simulation.compiled.period import Guard
 
         self._phases = experiment.phases
@@ -59,37 +61,40 @@ class Runs:
         self._free = experiment.plant == "single_integrator"
         starts = [experiment.starts.draw(np.random.default_rng(seed)) for seed in seeds]
         points, theta = (np.stack(part) for part in zip(*starts, strict=True))
-        n, runs, nid = experiment.n, len(seeds), experiment.nid
-        ahead = 0.0 if self._free else float(nid.projection_distance)
+        n, runs, fleet = experiment.n, len(seeds), experiment.fleet
+        nid, drive = fleet.nid, fleet.drive
         poses = np.concatenate([points, theta[..., None]], axis=-1) if self._free else nid.poses(points, theta)
-        self.state = lanes.new_state(poses, ahead)
+        self.state = lanes.new_state(poses, 0.0 if self._free else nid.ahead)
+        self._world = _contact(experiment, points, theta) if experiment.plant == "pymunk" else None
+        self._chassis = no_chassis() if self._world is None else self._world.chassis
         if self._free:
             self.state[[lanes.LEFT, lanes.RIGHT]] = np.nan
         law = cast(AngleLaw, experiment.law)  # nothing else is able
         self._law = gains(law, experiment.target, experiment.first_follower)
-        saturation = experiment.scenario.robot.saturation if experiment.plant == "saturated" else None
-        self._wheels = lanes.wheels(experiment.robot.drive, nid, saturation)
+        saturation = experiment.scenario.robot.saturation if experiment.plant != "unicycle" else None
+        self._wheels = lanes.wheels(drive, nid, saturation, n)
         silence = np.empty((runs, n, 0, 2))
         self._guard = Guard(
             experiment.safety != "none",
-            constants(experiment.filter_settings, experiment.robot.drive, nid, experiment.n),
+            constants(experiment.filter_settings, drive, nid, n),
             things(experiment.arena),
             Noise(silence, silence),
         )
 
-    def advance(self, most: int, fields: int = MOTION, blocked: bool = False) -> Iterator[Chunk]:
+    def advance(self, most: int, recorded: bool = False) -> Iterator[Chunk]:
         """All periods, in chunks of ``most`` at most, each of one phase.
 
         Args:
             most: periods in a chunk.
-            fields: of the states that a chunk has.
-            blocked: whether it has each period's blockers; else they are those of its last period.
+            recorded: whether a chunk has all that a trajectory holds; else where robots are and how their wheels turn,
+                and the blockers of its last period.
         """
+        from robots.worlds.lanes import RECORDED
         from scenarios.simulation.compiled.period import advance, integrate
 
         _, n, runs = self.state.shape
-        rows = np.empty((most, fields, n, runs))
-        blockers = np.full((most if blocked else 1, n, runs, BLOCKERS), -1, dtype=np.int32)
+        rows = np.empty((most, RECORDED if recorded else MOTION, n, runs))
+        blockers = np.full((most if recorded else 1, n, runs, BLOCKERS), -1, dtype=np.int32)
         first = 1
         for part in self._parts:
             commands = _commands(self._phases[part.index], part.period)
@@ -99,9 +104,20 @@ class Runs:
                     integrate(self.state, room, self._law, commands)
                 else:
                     after = blockers[: len(room)]
-                    advance(self.state, room, after, self._law, commands, self._guard, self._wheels)
+                    advance(self.state, room, after, self._law, commands, self._guard, self._wheels, self._chassis)
                 yield Chunk(first, part.index, room, blockers)
                 first += len(room)
+
+
+def _contact(experiment: Experiment, points: Real, theta: Real) -> Contact:
+    """The bodies of one run, points (1, n, 2)."""
+    from robots.worlds.contact import Contact  # pymunk is loaded only where bodies collide
+
+    fleet = experiment.fleet
+    (poses,) = fleet.nid.poses(points, theta)
+    robot = replace(experiment.robot, drive=fleet.drive)
+    saturation = experiment.scenario.robot.saturation
+    return Contact(poses, fleet.nid, robot, saturation, experiment.arena, bodies=fleet.bodies)
 
 
 def _commands(phase: Phase, period: float) -> Commands:

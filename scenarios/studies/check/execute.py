@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.measures.metrics import measure
 from scenarios.measures.result import result
-from scenarios.simulation.compiling import compile_filter
+from scenarios.simulation.compiling import compile_for
 from scenarios.simulation.loop import simulate
 from scenarios.simulation.schedule import count_periods
 from scenarios.studies.check.perturbed import perturbed
@@ -57,7 +57,8 @@ def execute(jobs: Sequence[Job], workers: int, on_progress: Callable[[int, int],
         InputError: a job cannot be opened or its starts cannot be drawn, known before anything runs.
     """
     queue = sorted(jobs, key=_cost, reverse=True)
-    compile_filter()
+    for job in {job.plant: job for job in queue}.values():
+        compile_for(job.open())
     done = {}
     for count, (job, finished) in enumerate(zip(queue, run_all(_run, queue, workers), strict=True), start=1):
         done[job] = finished

@@ -12,7 +12,7 @@ from scenarios.definition.experiment import Experiment, build
 from scenarios.errors import InputError
 from scenarios.measures.clearance import Clearance
 from scenarios.measures.metrics import measure
-from scenarios.measures.online.watch import Achieved, Watch
+from scenarios.measures.online.watch import Achieved, Watch, watchable
 from scenarios.measures.window import Window
 from scenarios.simulation.compiled.ability import unable
 from scenarios.simulation.compiled.runs import Runs
@@ -101,7 +101,7 @@ def run_batch(batch: Batch) -> list[Row]:
         experiment = build(batch.combination.file, batch.combination.duration)
     except Exception as error:
         return [_failed(batch, seed, error) for seed in batch.seeds]
-    if unable(experiment) is None:
+    if unable(experiment) is None and watchable(experiment):
         step = together(experiment)
         parts = [batch.seeds[first : first + step] for first in range(0, len(batch.seeds), step)]
         return [row for seeds in parts for row in _watched(batch, experiment, seeds)]

@@ -15,8 +15,9 @@ from typing import Any
 from scenarios.definition.experiment import Experiment, open_experiment, require_safety
 from scenarios.definition.load import ScenarioFile
 from scenarios.errors import InputError
+from scenarios.measures.online.watch import watchable
 from scenarios.measures.result import versions
-from scenarios.simulation.compiled.ability import unable
+from scenarios.simulation.compiled.ability import side_by_side, unable
 from scenarios.simulation.schedule import count_periods
 from scenarios.studies.project import PROJECT
 from scenarios.studies.sweep.seeds import Seeds
@@ -31,9 +32,6 @@ BATCH_STATES = 1_000_000
 LANES = 1584
 """Robots of compiled runs that advance side by side, run by run: 264 runs of six. Rows of a state a power of two apart
 would share lines of the cache."""
-
-MOST_TOGETHER = 64
-"""Robots of a run up to which compiled runs advance side by side; larger ones search for neighbours, each by itself."""
 
 MOST_BATCHED = 100
 """Runs whose states are kept in one batch; more are no faster and make progress coarse."""
@@ -56,7 +54,6 @@ class Combination:
         safety: the filter of its runs.
         batch_size: runs that are one task.
         duration: seconds to run, where it is not the scenario's own.
-        compiled: whether whole periods of many runs are one compiled call.
     """
 
     changes: tuple[str, ...]
@@ -65,7 +62,6 @@ class Combination:
     safety: str
     batch_size: int
     duration: float | None = None
-    compiled: bool = False
 
 
 @dataclass(frozen=True)
@@ -173,25 +169,29 @@ def open_study(
             experiment.initial_points(seeds.first)
         except InputError as error:
             raise InputError(f"{error} (seed {seeds.first})") from error
-        size, whole = batch_size(experiment), unable(experiment) is None
-        found.append(Combination(varied, values, experiment.file, experiment.safety, size, duration, whole))
+        found.append(Combination(varied, values, experiment.file, experiment.safety, batch_size(experiment), duration))
     return Study(changes, tuple(variations), tuple(found), seeds, duration)
 
 
 def batch_size(experiment: Experiment) -> int:
     """Runs that are one task."""
-    side_by_side = together(experiment)
-    if unable(experiment) is not None:
-        return side_by_side
-    passes = WATCHED_STATES // (side_by_side * experiment.n * count_periods(experiment))
-    return min(MOST_WATCHED, side_by_side * max(1, passes))
+    step = together(experiment)
+    if experiment.plant == SINGLE or not _watched(experiment):
+        return step
+    passes = WATCHED_STATES // (step * experiment.n * count_periods(experiment))
+    return min(MOST_WATCHED, step * max(1, passes))
 
 
 def together(experiment: Experiment) -> int:
     """Runs that advance together: many on a plant without contact, as far as memory and cache go, one on pymunk."""
     if experiment.plant == SINGLE:
         return 1
-    if unable(experiment) is None:
-        return max(1, LANES // experiment.n) if experiment.n <= MOST_TOGETHER else 1
+    if _watched(experiment):
+        return max(1, LANES // experiment.n) if side_by_side(experiment) else 1
     states = experiment.n * count_periods(experiment)
     return max(1, min(MOST_BATCHED, BATCH_STATES // states))
+
+
+def _watched(experiment: Experiment) -> bool:
+    """Whether its runs are measured on their way."""
+    return unable(experiment) is None and watchable(experiment)

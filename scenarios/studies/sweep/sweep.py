@@ -10,8 +10,9 @@ from pathlib import Path
 from time import monotonic
 from typing import Any
 
+from scenarios.definition.experiment import build
 from scenarios.errors import InputError
-from scenarios.simulation.compiling import compile_filters, compile_whole
+from scenarios.simulation.compiling import compile_for
 from scenarios.studies.sweep import folder as place
 from scenarios.studies.sweep.row import run_batch
 from scenarios.studies.sweep.study import Batch, Combination, Study
@@ -83,11 +84,10 @@ def sweep(
 
 def _compile(study: Study) -> None:
     """Compile what the runs need before they spread over processes: each would do it again."""
-    compile_filters(each.file.scenario for each in study.combinations if not each.compiled)
-    for each in {each.file.scenario.plant.name: each for each in study.combinations if each.compiled}.values():
-        scenario = each.file.scenario
-        short = replace(each, duration=scenario.plant.control_period_s)
-        compile_whole(scenario.plant.name, partial(run_batch, Batch(short, (study.seeds.first,))))
+    kinds = {(each.file.scenario.plant.name, each.safety): each for each in study.combinations}
+    for each in kinds.values():
+        short = replace(each, duration=each.file.scenario.plant.control_period_s)
+        compile_for(build(each.file, short.duration), partial(run_batch, Batch(short, (study.seeds.first,))))
 
 
 def _summary_file(study: Study, summaries: Sequence[Summary]) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from scenarios.errors import InputError
 from scenarios.measures.metrics import measure
 from scenarios.measures.predictions.forecast import forecast
 from scenarios.measures.result import result
-from scenarios.simulation.loop import simulate
+from scenarios.simulation.loop import simulate, step_by_step
 from scenarios.storage import run_folder
 
 ANGLE = """
@@ -88,7 +88,7 @@ def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., str]:
 
 
 def test_an_own_law_that_is_the_angle_law_moves_as_the_angle_law_bit_for_bit(own: Callable[..., str]) -> None:
-    mine, shape = (simulate(open_experiment(s, duration=1.0), 5) for s in (own(), "shape"))
+    mine, shape = (step_by_step(open_experiment(s, duration=1.0), 5) for s in (own(), "shape"))
     assert mine.poses.tobytes() == shape.poses.tobytes()
 
 
@@ -152,7 +152,7 @@ def test_a_phase_hands_its_displacement_and_a_law_that_asks_for_one_its_compass(
     assert table in text
     own(source)
     Path("mine.toml").write_text(text, encoding="utf-8")
-    mine, paper = (simulate(open_experiment(s, duration=1.0), 5) for s in ("./mine.toml", "maneuver"))
+    mine, paper = (step_by_step(open_experiment(s, duration=1.0), 5) for s in ("./mine.toml", "maneuver"))
     assert mine.poses.tobytes() == paper.poses.tobytes()
 
 

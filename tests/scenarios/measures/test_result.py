@@ -67,8 +67,8 @@ def test_a_result_is_json_and_agents_are_numbered_from_1(varied: Callable[..., E
 
 @pytest.mark.parametrize("plant", ["unicycle", "pymunk"])
 def test_a_diverged_run_is_an_outcome_that_json_can_hold(varied: Callable[..., Experiment], plant: str) -> None:
-    nearly_singular = NearIdentityDiffeomorphism(1e-308)
-    experiment = varied(f"plant.name={plant}", duration=1.0)
+    nearly_singular = NearIdentityDiffeomorphism(1e-310)
+    experiment = varied(f"plant.name={plant}", "safety.filter=none", duration=1.0)
     experiment = replace(experiment, fleet=replace(experiment.fleet, nid=nearly_singular))
     found = json.loads(json.dumps(summary(experiment), allow_nan=False))
     assert found["outcome"] == "diverged"

@@ -15,7 +15,7 @@ from scenarios.measures.metrics import measure
 from scenarios.measures.predictions.remarks import remarks
 from scenarios.measures.predictions.stops import spreads
 from scenarios.measures.result import result
-from scenarios.simulation.loop import simulate
+from scenarios.simulation.loop import simulate, step_by_step
 from scenarios.simulation.trajectory import Trajectory
 
 AT, UNTIL, LENGTH = 4.0, 6.0, 8.0
@@ -61,7 +61,7 @@ def speeds(trajectory: Trajectory, begin: float, end: float) -> np.ndarray:
 def test_a_run_is_the_same_until_an_event_and_not_after_it(kind: str) -> None:
     name, plant = SCENARIO.get(kind, "shape"), "pymunk" if kind == "obstacle" else "unicycle"
     with_it, without, again = (
-        simulate(opened(*events, name=name, plant=plant), 3) for events in ([one(kind)], [], [one(kind)])
+        step_by_step(opened(*events, name=name, plant=plant), 3) for events in ([one(kind)], [], [one(kind)])
     )
     until = without.t <= AT
     assert (with_it.t == without.t).all()
@@ -129,7 +129,7 @@ def test_a_sensing_range_is_the_distance_up_to_which_followers_move() -> None:
     short, long = (simulate(opened(one("sensor", sensing_range_m=reach, until_s=UNTIL)), 0) for reach in (1e-3, 50.0))
     assert (speeds(short, AT, UNTIL) == 0.0).all()
     assert (speeds(short, UNTIL, LENGTH)[2:] > 0.0).all()
-    assert (long.points == simulate(opened(), 0).points).all()
+    assert (long.points == step_by_step(opened(), 0).points).all()
 
 
 def test_a_field_of_view_decides_by_where_a_robot_points() -> None:

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import formation.laws.angle
-import scenarios.definition.experiment
+import scenarios.definition.parts.law
 from formation import AngleLaw, TargetFormation
 from scenarios import cli
 from scenarios.definition.experiment import open_experiment
@@ -101,7 +101,7 @@ def off_by_a_thousandth(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         positions[5] = positions[3] + turn @ (positions[5] - positions[3])  # alpha(4;1,6) grows by 0.001 rad
         return AngleLaw(TargetFormation(target.graph, positions), first_follower, own_gains)
 
-    monkeypatch.setattr(scenarios.definition.experiment, "AngleLaw", tilted)
+    monkeypatch.setattr(scenarios.definition.parts.law, "AngleLaw", tilted)
 
 
 def sign_flipped(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
