@@ -52,6 +52,7 @@ class Disturbance:
         angle: (..., c) radians.
         ratio: (..., c) factors.
         lost: (..., m) which edges give nothing.
+        keys: (...) that ``relative`` follows from; see :class:`robots.senses.noise.Noise`.
     """
 
     relative: tuple[Real, Real] | None = None
@@ -59,13 +60,14 @@ class Disturbance:
     angle: Real | None = None
     ratio: Real | None = None
     lost: NDArray[np.bool_] | None = None
+    keys: NDArray[np.uint64] | None = None
 
     @classmethod
     def stack(cls, draws: Sequence[Disturbance], batch: tuple[int, ...]) -> Disturbance:
         """The draws of several runs as one, or that of a single run where ``batch`` is ()."""
 
-        def together(parts: list[Real]) -> Real:
-            return np.stack(parts).reshape(*batch, *parts[0].shape)
+        def together(parts: list[NDArray[Any]]) -> NDArray[Any]:
+            return np.stack(parts).reshape((*batch, *parts[0].shape))
 
         first = draws[0]
         relative = None
@@ -74,7 +76,7 @@ class Disturbance:
             relative = together([turn for turn, _ in pairs]), together([offset for _, offset in pairs])
         rest: dict[str, Any] = {
             name: None if getattr(first, name) is None else together([getattr(draw, name) for draw in draws])
-            for name in ("distance", "angle", "ratio", "lost")
+            for name in ("distance", "angle", "ratio", "lost", "keys")
         }
         return cls(relative, **rest)
 
@@ -139,7 +141,8 @@ class Instruments:
         if has == Imperfections():
             return None
         m, c = len(self.edges), len(self._first)
-        relative = self._places.noise(rng)
+        key = self._places.key(rng)
+        relative = None if key is None else self._places.noise(key)
         distance = rng.normal(0.0, has.distance, m) if has.distance else None
         angle = rng.normal(0.0, has.angle, c) if has.angle else None
         ratio = 1.0 + rng.normal(0.0, has.ratio, c) if has.ratio else None
@@ -150,7 +153,7 @@ class Instruments:
                 observer = self.edges[:, 0]
                 blind = rng.random(int(observer.max(initial=-1)) + 1) < has.dropout
                 lost = lost | blind[observer]
-        return Disturbance(relative, distance, angle, ratio, lost)
+        return Disturbance(relative, distance, angle, ratio, lost, None if key is None else np.array(key))
 
     def deliver(self, relative: Real, disturbance: Disturbance | None) -> tuple[Real, ...]:
         """One array for each kind, from true relative positions (..., m, 2) and one period's disturbance."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from robots.senses.noise import draw_key
+
 Real = NDArray[np.float64]
 
 
@@ -18,7 +20,7 @@ class RelativePositionSensor:
     """
 
     def __init__(self, edges: ArrayLike, position_noise: float = 0.0, bearing_noise: float = 0.0) -> None:
-        self._observer, self._observed = np.asarray(edges, dtype=np.intp).T
+        self._observer, self._observed = np.ascontiguousarray(np.asarray(edges, dtype=np.int64).T)
         self._position_noise, self._bearing_noise = position_noise, bearing_noise
 
     def measure(self, points: Real, headings: Real, own: Real | None = None) -> Real:
@@ -34,16 +36,16 @@ class RelativePositionSensor:
         e *= frame.take(self._observer, axis=-1)
         return e[..., None].view(np.float64)
 
-    def noise(self, rng: np.random.Generator) -> tuple[Real, Real] | None:
-        """One period's noise of one run: unit rotations (m, 2) and offsets (m, 2), metres.
+    def key(self, rng: np.random.Generator) -> np.uint64 | None:
+        """The key of one period's noise of one run; None for perfect sensors, which draw nothing."""
+        return draw_key(rng) if self._position_noise or self._bearing_noise else None
 
-        None for perfect sensors, which draw nothing.
-        """
-        if self._position_noise == 0.0 and self._bearing_noise == 0.0:
-            return None
-        m = len(self._observer)
-        turn = np.exp(1j * rng.normal(0.0, self._bearing_noise, m))
-        return turn[:, None].view(np.float64), rng.normal(0.0, self._position_noise, (m, 2))
+    def noise(self, key: np.uint64) -> tuple[Real, Real]:
+        """The noise of a key: unit rotations (m, 2) and offsets (m, 2), metres."""
+        from robots.senses.chance import pairs  # numba is loaded only where it is used
+
+        drawn = pairs(key, self._observer, self._observed, float(self._position_noise), float(self._bearing_noise))
+        return drawn[:, :2].copy(), drawn[:, 2:].copy()
 
 
 def disturb(relative: Real, noise: tuple[Real, Real] | None) -> Real:

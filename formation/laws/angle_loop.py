@@ -15,57 +15,40 @@ from numpy.typing import NDArray
 from formation import agents
 from formation.laws.angle import AngleLaw
 from formation.laws.first_follower import BESIDE
-from formation.target import TargetFormation
 
 Real = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 FIRST_FOLLOWERS = ("stationary", "displacement", "distance", "bearing", "spiral")
 """The laws of :data:`formation.EDGE_LAWS`, by the number that the loops use."""
 
-_LEADER, _FIRST = agents.LEADER, agents.FIRST_FOLLOWER
+_LEADER, _FIRST, _FOLLOWERS = agents.LEADER, agents.FIRST_FOLLOWER, agents.FIRST_ORDINARY
 
 
 class Gains(NamedTuple):
     """The law of one formation.
 
     Attributes:
-        triangles: (n - 2, 3) rows: a follower k and its neighbours i and j.
         factors: (n - 2, 4) real and imaginary part of -A_k^T A_i, then of -A_k^T A_j, 1/s.
         first_follower: place in :data:`FIRST_FOLLOWERS`.
     """
 
-    triangles: Index
     factors: Real
     first_follower: int
 
 
-def gains(law: AngleLaw, target: TargetFormation, first_follower: str) -> Gains:
-    """The constants of a law for a target, with its first follower's name."""
-    i, j, k = target.graph.triangles.T
+def gains(law: AngleLaw, first_follower: str) -> Gains:
+    """The constants of a law with its first follower's name."""
     factors = np.ascontiguousarray(law.gains).view(np.float64).reshape(-1, 4)
-    return Gains(np.stack([k, i, j], axis=1).astype(np.int64), factors, FIRST_FOLLOWERS.index(first_follower))
+    return Gains(factors, FIRST_FOLLOWERS.index(first_follower))
 
 
-def feedback(
-    own_x: Real,
-    own_y: Real,
-    c: Real,
-    s: Real,
-    other_x: Real,
-    other_y: Real,
-    law: Gains,
-    delta_x: float,
-    delta_y: float,
-    gx: Real,
-    gy: Real,
-) -> None:
+def feedback(e: Real, c: Real, s: Real, law: Gains, delta_x: float, delta_y: float, gx: Real, gy: Real) -> None:
     """Velocities in body frames, m/s, without v_r.
 
     Args:
-        own_x, own_y: (n, L) where each agent takes itself to be, metres.
-        c, s: (n, L) cosine and sine of its heading.
-        other_x, other_y: (n, L) where others see it.
+        e: (2, 2n - 3, L) relative positions, metres, each in its observer's frame, in the row order of
+            :attr:`SensingGraph.edges`.
+        c, s: (n, L) cosine and sine of each agent's heading: its compass.
         law: constants.
         delta_x, delta_y: displacement that the first follower is told, metres, in the common frame.
         gx, gy: (n, L) out.
@@ -79,8 +62,7 @@ def feedback(
         size = math.sqrt(size2)
         for m in range(runs):
             ch, sh = c[_FIRST, m], s[_FIRST, m]
-            dx, dy = own_x[_FIRST, m] - other_x[_LEADER, m], own_y[_FIRST, m] - other_y[_LEADER, m]
-            ex, ey = dx * ch + dy * sh, dy * ch - dx * sh
+            ex, ey = -e[0, 0, m], -e[1, 0, m]
             tx, ty = delta_x * ch + delta_y * sh, delta_y * ch - delta_x * sh
             e2 = ex * ex + ey * ey
             if law.first_follower == 1:
@@ -98,15 +80,11 @@ def feedback(
                 bx, by, wx, wy = ex / length, ey / length, tx / size, ty / size
                 along = bx * wx + by * wy
                 gx[_FIRST, m], gy[_FIRST, m] = wx - bx * along, wy - by * along
-    for row in range(len(law.triangles)):
-        k, i, j = law.triangles[row, 0], law.triangles[row, 1], law.triangles[row, 2]
+    for row in range(len(law.factors)):
+        k, first = _FOLLOWERS + row, 1 + 2 * row
         i_real, i_imag = law.factors[row, 0], law.factors[row, 1]
         j_real, j_imag = law.factors[row, 2], law.factors[row, 3]
         for m in range(runs):
-            ch, sh = c[k, m], s[k, m]
-            dx, dy = other_x[i, m] - own_x[k, m], other_y[i, m] - own_y[k, m]
-            ex, ey = dx * ch + dy * sh, dy * ch - dx * sh
-            dx, dy = other_x[j, m] - own_x[k, m], other_y[j, m] - own_y[k, m]
-            fx, fy = dx * ch + dy * sh, dy * ch - dx * sh
+            ex, ey, fx, fy = e[0, first, m], e[1, first, m], e[0, first + 1, m], e[1, first + 1, m]
             gx[k, m] = (i_real * ex - i_imag * ey) + (j_real * fx - j_imag * fy)
             gy[k, m] = (i_real * ey + i_imag * ex) + (j_real * fy + j_imag * fx)

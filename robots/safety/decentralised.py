@@ -14,9 +14,9 @@ from robots.obstacles import Obstacle, pack
 from robots.safety.barrier import FilterSettings
 from robots.safety.crowd import LARGE
 from robots.safety.protocol import BLOCKERS, Noise, Real
-from robots.safety.rows import Noise as Measured
 from robots.safety.rows import Things, constants, things
 from robots.safety.step import filter_step
+from robots.senses.noise import silence
 from robots.worlds import lanes
 from robots.worlds.lanes import COS, GX, NOW, PX, SEEN_X, UX, VX, Senses
 
@@ -86,13 +86,9 @@ class DecentralisedFilter:
             part = slice(first, first + state.shape[2])
             for field, vectors in given.items():
                 state[field : field + 2] = vectors.reshape(-1, n, 2)[part].T
-            if noise is None:
-                silence = np.empty((state.shape[2], n, 0, 2))
-                measured = Measured(silence, silence)
-            else:
-                measured = Measured(*(each.reshape(len(u), n, -1, 2)[part] for each in (noise.turns, noise.offsets)))
+            heard = silence(state.shape[2]) if noise is None else noise._replace(keys=noise.keys.reshape(-1)[part])
             senses = NOW if seen is None else _LATE
-            filter_step(state, blockers, float(period), senses, self._constants, self._things, measured)
+            filter_step(state, blockers, float(period), senses, self._constants, self._things, heard)
             u[part] = state[UX : UX + 2].T
             first = part.stop
         self._tell()

@@ -203,9 +203,13 @@ def disturbed(e: Real, frame: NDArray[np.complex128], noise: Noise | None, run: 
     """World-frame vectors (m, 2) from things to robots, as the robots ``rows`` measure them, metres."""
     if noise is None:
         return e
-    turns, offsets = (a.reshape(-1, *a.shape[-3:])[run, rows, codes] for a in (noise.turns, noise.offsets))
-    z = e.view(np.complex128) * np.ascontiguousarray(turns).view(np.complex128)
-    return (z - np.ascontiguousarray(offsets).view(np.complex128) * frame[rows]).view(np.float64)
+    from robots.senses.chance import pairs  # numba is loaded only where it is used
+
+    who, what = (np.ascontiguousarray(np.broadcast_to(each, len(e)), dtype=np.int64) for each in (rows, codes))
+    drawn = pairs(noise.keys.reshape(-1)[run], who, what, noise.position, noise.bearing)
+    turns, offsets = drawn.view(np.complex128).T
+    z = e.view(np.complex128)[:, 0] * turns - offsets * frame[rows, 0]
+    return z[:, None].view(np.float64)
 
 
 def _advance(stuck: Real, progress: Real, wish: Real, period: float) -> None:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robots.obstacles import Obstacle
+from robots.senses.noise import Noise as Noise
 
 Real = NDArray[np.float64]
 
@@ -18,21 +18,6 @@ WALLS = 4
 
 BLOCKERS = 3
 """At a vertex of the least relaxation at most three rows meet."""
-
-
-@dataclass(frozen=True, eq=False)
-class Noise:
-    """One period's noise of what robots measure of other robots, walls and obstacles.
-
-    Columns are the n robots, the 4 walls and the obstacles, in the frame of the observer of the row.
-
-    Attributes:
-        turns: (..., n, n + 4 + O, 2) unit rotations.
-        offsets: (..., n, n + 4 + O, 2) metres.
-    """
-
-    turns: Real
-    offsets: Real
 
 
 class SafetyFilter(Protocol):

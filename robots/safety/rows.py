@@ -30,6 +30,8 @@ from robots.safety.barrier import (
 )
 from robots.safety.protocol import WALLS
 from robots.safety.things import nearest_on_obstacle
+from robots.senses.chance import pair
+from robots.senses.noise import Noise
 from robots.worlds.lanes import VX, VY, Senses
 
 Real = NDArray[np.float64]
@@ -80,17 +82,6 @@ class Things(NamedTuple):
     radii: Real
 
 
-class Noise(NamedTuple):
-    """Noise of what each robot measures of every robot, wall and obstacle, in the observer's frame.
-
-    Attributes:
-        turns, offsets: (L, n, n + 4 + O, 2) unit rotations, and metres; (L, n, 0, 2) for perfect sensors.
-    """
-
-    turns: Real
-    offsets: Real
-
-
 def constants(settings: FilterSettings, drive: DifferentialDrive, nid: NearIdentityDiffeomorphism, n: int) -> Constants:
     """What the compiled filter has to know of its settings and of the n robots."""
     return Constants(
@@ -136,7 +127,7 @@ def rows_of(
         rows: (m, 4, L) out.
         source: (m,) out: what each belongs to: robots 0..n-1, walls n..n+3, then obstacles.
     """
-    n, noisy = state.shape[1], noise.turns.shape[2] > 0
+    n, noisy = state.shape[1], noise.position > 0.0 or noise.bearing > 0.0
     reach, safe = constants.sensing_range, constants.safe_distance
     for place in range(count):
         j = found[place]
@@ -197,10 +188,10 @@ def _away(state: Real, i: int, k: int, senses: Senses, things: Things, reach: fl
 def _disturb(i: int, code: int, noise: Noise, row: Real) -> None:
     """Turn and shift the vectors from a thing to its observer, whose measurement is of the opposite vector."""
     for m in range(row.shape[1]):
-        turn_x, turn_y = noise.turns[m, i, code, 0], noise.turns[m, i, code, 1]
-        ex, ey = row[NORMAL_X, m], row[NORMAL_Y, m]
-        row[NORMAL_X, m] = turn_x * ex - turn_y * ey - noise.offsets[m, i, code, 0]
-        row[NORMAL_Y, m] = turn_y * ex + turn_x * ey - noise.offsets[m, i, code, 1]
+        if row[LEVEL, m] > -np.inf:  # what is not sensed draws nothing
+            cosine, sine, x, y = pair(noise.keys[m], i, code, noise.position, noise.bearing)
+            ex, ey = row[NORMAL_X, m], row[NORMAL_Y, m]
+            row[NORMAL_X, m], row[NORMAL_Y, m] = cosine * ex - sine * ey - x, sine * ex + cosine * ey - y
 
 
 @compiled

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from robots.compiled import compiled, inlined
 from robots.safety.crowd import LARGE, around, fill_grid, in_rows, others
 from robots.safety.protocol import BLOCKERS
-from robots.safety.rows import CLOSE, LEVEL, MOST, NORMAL_X, NORMAL_Y, ROW, Constants, Noise, Things, rows_of
+from robots.safety.rows import CLOSE, LEVEL, MOST, NORMAL_X, NORMAL_Y, ROW, Constants, Things, rows_of
 from robots.safety.solver import RELAXED, TIGHT, WHEEL_ROWS, project, wheel_rows, within_wheels
+from robots.senses.noise import Noise
 from robots.worlds.lanes import (
     GX,
     GY,

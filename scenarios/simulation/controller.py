@@ -105,8 +105,6 @@ class Controller:
         if self._activation is not None:
             self._activation = self._sequence(shape)
             self.active = self._activation.active
-        if self.guard is not None:
-            self.guard.take_edges(self._instruments.edges)
 
     def _sequence(self, shape: Experiment) -> SequentialActivation:
         return SequentialActivation(shape.target, shape.scenario.law.settled_m, self._batch, shape.own_gains)
@@ -123,8 +121,7 @@ class Controller:
             disturbance = self._outages.disturb(disturbance, self._instruments, sensed)
         self._disturbance = disturbance
         if self.guard is not None:
-            noise = None if self._disturbance is None else self._disturbance.relative
-            self.guard.begin_period(self._generators, self._batch, noise, period)
+            self.guard.begin_period(None if self._disturbance is None else self._disturbance.keys, period)
         if self._estimator is not None and self._velocity is not None:
             self._velocity = self._estimator.step(self._velocity, self._commanded, period, self._heard())
         if self._activation is not None:

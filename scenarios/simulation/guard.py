@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
 from robots.own_motion import Sensed
 from robots.safety import Distributed, Noise, SafetyFilter, make_filter
-from robots.safety.protocol import BLOCKERS, WALLS
+from robots.safety.protocol import BLOCKERS
 from scenarios.definition.experiment import Experiment
 
 Real = NDArray[np.float64]
@@ -28,34 +26,14 @@ class Guard:
         table = experiment.scenario.sensor
         self.filter = safety
         self._distributed = safety if isinstance(safety, Distributed) else None
-        self._position, self._bearing = table.position_noise_m, np.radians(table.bearing_noise_deg)
-        self._seen = (experiment.n, experiment.n + WALLS + len(experiment.arena.obstacles))
-        self.take_edges(experiment.instruments.edges)
+        self._position, self._bearing = table.position_noise_m, float(np.radians(table.bearing_noise_deg))
         self._noise: Noise | None = None
         self._period = experiment.scenario.plant.control_period_s
 
-    def take_edges(self, edges: NDArray[np.intp]) -> None:
-        """Take the edges (m, 2) along which the law measures."""
-        self._observer, self._observed = edges.T
-
-    def begin_period(
-        self,
-        generators: Sequence[np.random.Generator],
-        batch: tuple[int, ...],
-        edge_noise: tuple[Real, Real] | None,
-        period: float,
-    ) -> None:
-        """Draw the noise that holds for one control period; ``edge_noise`` is the law's, (..., m, 2) each."""
+    def begin_period(self, keys: NDArray[np.uint64] | None, period: float) -> None:
+        """Take the keys (...) of the noise that holds for one control period, seconds; None for perfect sensors."""
         self._period = period
-        if edge_noise is None:
-            return
-        shape = (*batch, *self._seen)
-        angles = np.stack([rng.normal(0.0, self._bearing, self._seen) for rng in generators]).reshape(shape)
-        turns = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
-        offsets = np.stack([rng.normal(0.0, self._position, (*self._seen, 2)) for rng in generators])
-        offsets = offsets.reshape(*shape, 2)
-        turns[..., self._observer, self._observed, :], offsets[..., self._observer, self._observed, :] = edge_noise
-        self._noise = Noise(turns, offsets)
+        self._noise = None if keys is None else Noise(keys, self._position, self._bearing)
 
     def __call__(self, sensed: Sensed, feedback: Real, common: Real) -> Real:
         """The filtered velocities; see :meth:`robots.safety.SafetyFilter.filter`.

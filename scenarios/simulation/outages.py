@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,7 +75,7 @@ class Outages:
             return drawn
         had = drawn or Disturbance()
         also = lost if had.lost is None else had.lost | lost
-        return Disturbance(had.relative, had.distance, had.angle, had.ratio, also)
+        return replace(had, lost=also)
 
     def _unseen(self, instruments: Instruments, sensed: Sensed) -> Flags | None:
         """(..., m) edges that are lost, or longer than the sensing range, or outside the field of view."""

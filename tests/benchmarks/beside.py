@@ -36,9 +36,9 @@ plant, safety, seeds = sys.argv[1:]
 def spent(count):
     with tempfile.TemporaryDirectory() as folder:
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        command = ["-m", "scenarios", "sweep", "shape", "--plant", plant, "--safety", safety, "--seeds", f"0:{count}"]
-        done = subprocess.run([sys.executable, *command, "--workers", "1", "--out", folder + "/sweep"],
-            stdout=subprocess.DEVNULL)
+        command = ["-m", "scenarios", "sweep", "shape", "--plant", plant, "--set", f"safety.filter={safety}"]
+        command += ["--seeds", f"0:{count}", "--workers", "1", "--out", folder + "/sweep"]
+        subprocess.run([sys.executable, *command], stdout=subprocess.DEVNULL, check=True)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 print((spent(2 * int(seeds)) - spent(int(seeds))) / int(seeds))
@@ -53,9 +53,9 @@ STEPS = {
     "a control period of 50 robots, pymunk, filter": ("random-50", "3", "4", "plant.name=pymunk", FILTERED),
 }
 SWEEPS = {
-    "one more run of a sweep, saturated, no filter": ("saturated", "none", (30, 4000)),
-    "one more run of a sweep, saturated, filter": ("saturated", "decentralised", (30, 2000)),
-    "one more run of a sweep, pymunk, filter": ("pymunk", "decentralised", (8, 60)),
+    "one more run of a sweep, saturated, no filter": ("saturated", "none", (60, 3000)),
+    "one more run of a sweep, saturated, filter": ("saturated", "decentralised", (60, 1500)),
+    "one more run of a sweep, pymunk, filter": ("pymunk", "decentralised", (20, 100)),
 }
 
 

@@ -11,6 +11,7 @@ from robots import GTERNAL, Arena, NearIdentityDiffeomorphism, make_world
 from robots.obstacles import disc
 from robots.safety import FILTERS, FilterSettings, Noise, make_filter
 from robots.safety.protocol import WALLS
+from robots.senses.chance import pair
 
 NID = NearIdentityDiffeomorphism(0.025)
 PERIOD = 0.033
@@ -191,12 +192,10 @@ def test_two_robots_that_meet_head_on_pass_on_the_left_of_their_way() -> None:
 def test_the_filter_acts_on_what_is_measured() -> None:
     """An offset in the measurement of the other robot does the same as that robot in another place."""
     points, headings, feedback, common = head_on(0.25)
-    offset = np.array([-0.06, 0.01])
-    turns, offsets = np.zeros((2, 2 + WALLS, 2)), np.zeros((2, 2 + WALLS, 2))
-    turns[..., 0] = 1.0
-    offsets[0, 1] = offset  # the heading of robot 0 is the x axis
+    key = np.uint64(7)
+    offset = np.array(pair(key, 0, 1, 0.05, 0.0)[2:])  # the heading of robot 0 is the x axis
     moved = points + [[0.0, 0.0], offset]
-    seen = build((2,)).filter(points, headings, feedback, common, PERIOD, Noise(turns, offsets))
+    seen = build((2,)).filter(points, headings, feedback, common, PERIOD, Noise(np.array(key), 0.05, 0.0))
     there = build((2,)).filter(moved, headings, feedback, common, PERIOD)
     np.testing.assert_allclose(seen[0], there[0], atol=1e-9)
 

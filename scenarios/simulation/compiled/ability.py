@@ -70,6 +70,8 @@ KNOWN = frozenset(
         "obstacles.radius_m",
         "goal.angle_error_sum_rad",
         "goal.accepted",
+        "sensor.position_noise_m",
+        "sensor.bearing_noise_deg",
     }
 )
 """Keys that the compiled period honours, or that it need not know: starts, targets, goals."""

@@ -14,12 +14,15 @@ from numpy.typing import NDArray
 from formation.laws import angle_loop
 from formation.laws.angle_loop import Gains
 from robots.compiled import compiled
-from robots.safety.rows import Constants, Noise, Things
+from robots.safety.rows import Constants, Things
 from robots.safety.step import Code, filter_step
+from robots.senses.measure import measure
+from robots.senses.noise import Noise
 from robots.worlds.bodies import Chassis, shove
 from robots.worlds.lanes import COS, GX, GY, NOW, PX, PY, SIN, UX, UY, VX, VY, WX, WY, Wheels, X, Y, roll
 
 Real = NDArray[np.float64]
+Index = NDArray[np.int64]
 
 
 class Commands(NamedTuple):
@@ -38,7 +41,13 @@ class Guard(NamedTuple):
     present: bool
     constants: Constants
     things: Things
-    noise: Noise
+
+
+class Law(NamedTuple):
+    """The law and the edges (m, 2) along which it measures, rows (observer, observed)."""
+
+    gains: Gains
+    edges: Index
 
 
 _feedback = compiled(angle_loop.feedback)
@@ -49,7 +58,8 @@ def advance(
     state: Real,
     rows: Real,
     blockers: Code,
-    law: Gains,
+    law: Law,
+    noise: Noise,
     commands: Commands,
     guard: Guard,
     wheels: Wheels,
@@ -60,13 +70,16 @@ def advance(
     Args:
         state: (FIELDS, n, L), advanced in place; see :mod:`robots.worlds.lanes`.
         rows: (K, F, n, L) out: the first F fields of the state after each period.
+        noise: with keys (K, L), of each period.
         blockers: (K, n, L, 3) out, see :func:`robots.safety.step.filter_step`; or (1, n, L, 3) for the last period's.
     """
+    e = np.empty((2, len(law.edges), state.shape[2]))
     for k in range(len(rows)):
-        _obey(state, law, commands)
+        heard = Noise(noise.keys[k], noise.position, noise.bearing)
+        _obey(state, law, heard, commands, e)
         if guard.present:
             after = blockers[k % len(blockers)]
-            filter_step(state, after, commands.period, NOW, guard.constants, guard.things, guard.noise)
+            filter_step(state, after, commands.period, NOW, guard.constants, guard.things, heard)
         else:
             state[UX : UY + 1] = state[WX : WY + 1]
         if chassis.substeps > 0:
@@ -77,14 +90,16 @@ def advance(
 
 
 @compiled
-def integrate(state: Real, rows: Real, law: Gains, commands: Commands) -> None:
+def integrate(state: Real, rows: Real, law: Law, noise: Noise, commands: Commands) -> None:
     """The same of points that move as they will, dp/dt = u, by the classical Runge-Kutta method of order four."""
     h = commands.period
+    e = np.empty((2, len(law.edges), state.shape[2]))
     start, total, slope = np.empty((3, 2, *state.shape[1:]))
     for k in range(len(rows)):
         start[:] = state[PX : PY + 1]
+        heard = Noise(noise.keys[k], noise.position, noise.bearing)
         for stage in range(4):
-            _obey(state, law, commands)
+            _obey(state, law, heard, commands, e)
             state[UX : UY + 1] = state[WX : WY + 1]
             _turn_out(state, slope)
             if stage == 0:
@@ -101,10 +116,11 @@ def integrate(state: Real, rows: Real, law: Gains, commands: Commands) -> None:
 
 
 @compiled
-def _obey(state: Real, law: Gains, commands: Commands) -> None:
+def _obey(state: Real, law: Law, noise: Noise, commands: Commands, e: Real) -> None:
     """What the law and the commanded v_r ask of each robot, in its body frame."""
-    px, py, c, s, gx, gy = state[PX], state[PY], state[COS], state[SIN], state[GX], state[GY]
-    _feedback(px, py, c, s, px, py, law, commands.delta_x, commands.delta_y, gx, gy)
+    measure(state, law.edges, NOW, noise, e)
+    c, s, gx, gy = state[COS], state[SIN], state[GX], state[GY]
+    _feedback(e, c, s, law.gains, commands.delta_x, commands.delta_y, gx, gy)
     vx, vy = commands.velocity_x, commands.velocity_y
     for i in range(state.shape[1]):
         for m in range(state.shape[2]):

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from formation import Phase
 from formation.laws.angle import AngleLaw
 from robots.safety.protocol import BLOCKERS
+from robots.senses.noise import Noise, draw_key
 from scenarios.definition.experiment import Experiment
 from scenarios.simulation.schedule import schedule
 
@@ -51,17 +52,18 @@ class Runs:
 
     def __init__(self, experiment: Experiment, seeds: Sequence[int]) -> None:
         from formation.laws.angle_loop import gains  # numba is loaded only where it is used
-        from robots.safety.rows import Noise, constants, things
+        from robots.safety.rows import constants, things
         from robots.worlds import lanes
         from robots.worlds.bodies import no_chassis
-        from scenarios.simulation.compiled.period import Guard
+        from scenarios.simulation.compiled.period import Guard, Law
 
         self._phases = experiment.phases
         self._parts = schedule(experiment)
         self._free = experiment.plant == "single_integrator"
-        starts = [experiment.starts.draw(np.random.default_rng(seed)) for seed in seeds]
+        self._generators = [np.random.default_rng(seed) for seed in seeds]
+        starts = [experiment.starts.draw(rng) for rng in self._generators]
         points, theta = (np.stack(part) for part in zip(*starts, strict=True))
-        n, runs, fleet = experiment.n, len(seeds), experiment.fleet
+        n, fleet = experiment.n, experiment.fleet
         nid, drive = fleet.nid, fleet.drive
         poses = np.concatenate([points, theta[..., None]], axis=-1) if self._free else nid.poses(points, theta)
         self.state = lanes.new_state(poses, 0.0 if self._free else nid.ahead)
@@ -70,15 +72,15 @@ class Runs:
         if self._free:
             self.state[[lanes.LEFT, lanes.RIGHT]] = np.nan
         law = cast(AngleLaw, experiment.law)  # nothing else is able
-        self._law = gains(law, experiment.target, experiment.first_follower)
+        edges = experiment.instruments.edges.astype(np.int64)
+        self._law = Law(gains(law, experiment.first_follower), edges)
+        self._imperfections = experiment.instruments.imperfections
         saturation = experiment.scenario.robot.saturation if experiment.plant != "unicycle" else None
         self._wheels = lanes.wheels(drive, nid, saturation, n)
-        silence = np.empty((runs, n, 0, 2))
         self._guard = Guard(
             experiment.safety != "none",
             constants(experiment.filter_settings, drive, nid, n),
             things(experiment.arena),
-            Noise(silence, silence),
         )
 
     def advance(self, most: int, recorded: bool = False) -> Iterator[Chunk]:
@@ -100,13 +102,24 @@ class Runs:
             commands = _commands(self._phases[part.index], part.period)
             for done in range(0, part.count, most):
                 room = rows[: part.count - done]
+                noise = self._noise(len(room))
                 if self._free:
-                    integrate(self.state, room, self._law, commands)
+                    integrate(self.state, room, self._law, noise, commands)
                 else:
                     after = blockers[: len(room)]
-                    advance(self.state, room, after, self._law, commands, self._guard, self._wheels, self._chassis)
+                    advance(
+                        self.state, room, after, self._law, noise, commands, self._guard, self._wheels, self._chassis
+                    )
                 yield Chunk(first, part.index, room, blockers)
                 first += len(room)
+
+    def _noise(self, periods: int) -> Noise:
+        """The noise of the next periods, keys (K, L)."""
+        has = self._imperfections
+        if not (has.position or has.bearing):
+            return Noise(np.zeros((periods, len(self._generators)), dtype=np.uint64), 0.0, 0.0)
+        keys = [[draw_key(rng) for _ in range(periods)] for rng in self._generators]
+        return Noise(np.array(keys, dtype=np.uint64).T.copy(), float(has.position), float(has.bearing))
 
 
 def _contact(experiment: Experiment, points: Real, theta: Real) -> Contact:
