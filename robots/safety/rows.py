@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.arena import Arena
-from robots.compiled import compiled
+from robots.compiled import compiled, inlined
 from robots.drive import DifferentialDrive
 from robots.nid import NearIdentityDiffeomorphism
 from robots.obstacles import pack
@@ -147,7 +147,7 @@ def rows_of(
     return count + walls + len(things.radii)
 
 
-@compiled
+@inlined
 def _toward(state: Real, i: int, j: int, senses: Senses, reach2: float, row: Real) -> None:
     """The vector from robot j to robot i, metres, in the frame of i, as n; b is 0, or -inf where j is not sensed."""
     own, frame, other = senses
@@ -158,7 +158,7 @@ def _toward(state: Real, i: int, j: int, senses: Senses, reach2: float, row: Rea
         row[LEVEL, m] = 0.0 if dx * dx + dy * dy < reach2 else -np.inf
 
 
-@compiled
+@inlined
 def _away(state: Real, i: int, k: int, senses: Senses, things: Things, reach: float, row: Real) -> None:
     """The vector from the nearest point of thing k to robot i, as n; b is the sign of the distance, or -inf.
 
@@ -184,7 +184,7 @@ def _away(state: Real, i: int, k: int, senses: Senses, things: Things, reach: fl
         row[LEVEL, m] = sign if distance < reach else -np.inf
 
 
-@compiled
+@inlined
 def _disturb(i: int, code: int, noise: Noise, row: Real) -> None:
     """Turn and shift the vectors from a thing to its observer, whose measurement is of the opposite vector."""
     for m in range(row.shape[1]):
@@ -194,7 +194,7 @@ def _disturb(i: int, code: int, noise: Noise, row: Real) -> None:
             row[NORMAL_X, m], row[NORMAL_Y, m] = cosine * ex - sine * ey - x, sine * ex + cosine * ey - y
 
 
-@compiled
+@inlined
 def _robot_row(vx: Real, vy: Real, row: Real, safe: float, window: float, gain: float) -> None:
     """The row (pair) from the vector in the place of n; a robot in one place with this one has none."""
     quarter, safe2, reach, share = gain / 4.0, safe * safe, safe + window, 1.0 / window
@@ -211,7 +211,7 @@ def _robot_row(vx: Real, vy: Real, row: Real, safe: float, window: float, gain: 
         row[CLOSE, m] = min(max((reach - distance) * share, 0.0), 1.0) if sensed else 0.0
 
 
-@compiled
+@inlined
 def _thing_row(row: Real, clearance: float, window: float, gain: float) -> None:
     """The row (thing) from the vector in the place of n and the sign of the distance in the place of b."""
     for m in range(row.shape[1]):

@@ -104,7 +104,8 @@ def _least_relaxation(
         x, y: a point of the diamond.
     """
     delta = 0.0
-    work[:WHEEL_ROWS] = rows[:WHEEL_ROWS]
+    for side in range(WHEEL_ROWS):
+        work[side, 0], work[side, 1], work[side, 2] = rows[side, 0], rows[side, 1], rows[side, 2]
     for i in range(WHEEL_ROWS, count):
         ax, ay, b = rows[i, 0], rows[i, 1], rows[i, 2]
         if b - ax * x - ay * y <= delta + TIGHT:

@@ -86,7 +86,7 @@ def filter_step(
         _judge(state, i, period, senses, constants, wish_x, wish_y)
 
 
-@compiled
+@inlined
 def _bound(x: Real, y: Real) -> None:
     """Shorten velocities to :data:`MOST` in their larger parts."""
     for m in range(len(x)):
@@ -101,7 +101,7 @@ def bounded(x: float, y: float) -> tuple[float, float]:
     return x * share, y * share
 
 
-@compiled
+@inlined
 def _crowding(rows: Real, used: int, gx: Real, gy: Real, crowding: Real) -> None:
     """How much the law drives at something near: 0 where nothing is sensed or it drives away, 1 head-on at contact."""
     crowding[:] = 0.0
@@ -115,7 +115,7 @@ def _crowding(rows: Real, used: int, gx: Real, gy: Real, crowding: Real) -> None
         crowding[m] = crowding[m] / law if law > 0.0 else 0.0
 
 
-@compiled
+@inlined
 def _wish(state: Real, i: int, crowding: Real, constants: Constants, wish_x: Real, wish_y: Real) -> None:
     """Where robot i wishes to go: its law, turned where it is crowded or stuck, and scaled to the wheels."""
     speed, weight = constants.speed_limits[i], constants.turn_weights[i]
@@ -130,7 +130,7 @@ def _wish(state: Real, i: int, crowding: Real, constants: Constants, wish_x: Rea
         wish_x[m], wish_y[m] = vx + share * gx, vy + share * gy
 
 
-@compiled
+@inlined
 def _breaks(rows: Real, used: int, x: Real, y: Real, speed: float, weight: float, broken: Real) -> None:
     """1 in the runs in which (x, y) breaks a row or the wheels' limits, else 0."""
     for m in range(len(broken)):
@@ -178,7 +178,7 @@ def _solve(
                 row += 1
 
 
-@compiled
+@inlined
 def _judge(
     state: Real, i: int, period: float, senses: Senses, constants: Constants, wish_x: Real, wish_y: Real
 ) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.compiled import compiled
-from robots.worlds.chipmunk import BODY_ANGLE, BODY_SPIN, BODY_VX, BODY_X, BODY_Y, Bodies, drive, no_bodies
+from robots.worlds.chipmunk import BODY_ANGLE, BODY_VX, BODY_X, BODY_Y, Bodies, drive, no_bodies
 from robots.worlds.lanes import (
     CONTACT,
     COS,
@@ -71,7 +71,9 @@ def move(chassis: Chassis, period: float) -> None:
         sine, cosine = sine_cosine(state[i, BODY_ANGLE] + dt * command[i, 2] + half)
         command[n + i, 0], command[n + i, 1], command[n + i, 2] = speed * cosine, speed * sine, turning
     drive(bodies, chassis.substeps, dt)
-    command[:n] = state[:n, BODY_VX : BODY_SPIN + 1]  # written back unchanged with the next command
+    for i in range(n):
+        for axis in range(command.shape[1]):
+            command[i, axis] = state[i, BODY_VX + axis]  # written back unchanged with the next command
 
 
 @compiled

@@ -157,8 +157,10 @@ def observe(bodies: Bodies) -> None:
     bodies.read_count[0] = bodies.touch_count[0] = 0
     _visit(bodies.each_body, bodies.space, bodies.read, bodies.reading)
     _visit(bodies.each_touch, bodies.space, bodies.touch, bodies.touching)
-    count = bodies.read_count[0] // bodies.state.shape[1]
-    bodies.state[:count] = _array(_pointer(bodies.read_place[0]), bodies.state[:count].shape, np.float64)
+    columns, read = bodies.state.shape[1], bodies.read_count[0]
+    numbers = _array(_pointer(bodies.read_place[0]), read, np.float64)
+    for place in range(read):
+        bodies.state[place // columns, place % columns] = numbers[place]
     touched, n = bodies.touched, len(bodies.touched)
     touched[:] = NOTHING
     found = bodies.touch_count[0]

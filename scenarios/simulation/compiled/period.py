@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from formation.laws import angle_loop
 from formation.laws.angle_loop import Gains
-from robots.compiled import compiled
+from robots.compiled import compiled, inlined
 from robots.safety.rows import Constants, Things
 from robots.safety.step import Code, filter_step
 from robots.senses.measure import measure
 from robots.senses.noise import Noise
 from robots.worlds.bodies import Chassis, shove
-from robots.worlds.lanes import COS, GX, GY, NOW, PX, PY, SIN, UX, UY, VX, VY, WX, WY, Wheels, X, Y, roll
+from robots.worlds.lanes import COS, GX, GY, NOW, PX, SIN, UX, UY, VX, VY, WX, WY, Wheels, X, roll
 
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -81,12 +81,12 @@ def advance(
             after = blockers[k % len(blockers)]
             filter_step(state, after, commands.period, NOW, guard.constants, guard.things, heard)
         else:
-            state[UX : UY + 1] = state[WX : WY + 1]
+            _copy(state, WX, state, UX, 2)
         if chassis.substeps > 0:
             shove(state, wheels, chassis, commands.period)
         else:
             roll(state, wheels, commands.period)
-        rows[k] = state[: rows.shape[1]]
+        _copy(state, 0, rows[k], 0, rows.shape[1])
 
 
 @compiled
@@ -96,14 +96,14 @@ def integrate(state: Real, rows: Real, law: Law, noise: Noise, commands: Command
     e = np.empty((2, len(law.edges), state.shape[2]))
     start, total, slope = np.empty((3, 2, *state.shape[1:]))
     for k in range(len(rows)):
-        start[:] = state[PX : PY + 1]
+        _copy(state, PX, start, 0, 2)
         heard = Noise(noise.keys[k], noise.position, noise.bearing)
         for stage in range(4):
             _obey(state, law, heard, commands, e)
-            state[UX : UY + 1] = state[WX : WY + 1]
+            _copy(state, WX, state, UX, 2)
             _turn_out(state, slope)
             if stage == 0:
-                total[:] = slope
+                _copy(slope, 0, total, 0, 2)
                 _go(state, start, slope, h / 2.0)
             elif stage < 3:
                 _add(total, slope, 2.0)
@@ -111,8 +111,8 @@ def integrate(state: Real, rows: Real, law: Law, noise: Noise, commands: Command
             else:
                 _add(total, slope, 1.0)
         _go(state, start, total, h / 6.0)
-        state[X : Y + 1] = state[PX : PY + 1]
-        rows[k] = state[: rows.shape[1]]
+        _copy(state, PX, state, X, 2)
+        _copy(state, 0, rows[k], 0, rows.shape[1])
 
 
 @compiled
@@ -144,6 +144,15 @@ def _go(state: Real, start: Real, slope: Real, step: float) -> None:
         for i in range(state.shape[1]):
             for m in range(state.shape[2]):
                 state[PX + axis, i, m] = start[axis, i, m] + step * slope[axis, i, m]
+
+
+@inlined
+def _copy(source: Real, first: int, into: Real, place: int, count: int) -> None:
+    """Copy so many fields, from the ``first`` on; numpy's own assignment takes seconds to compile its error message."""
+    for field in range(count):
+        for i in range(source.shape[1]):
+            for m in range(source.shape[2]):
+                into[place + field, i, m] = source[first + field, i, m]
 
 
 @compiled

@@ -1,4 +1,7 @@
-"""The compiled period against the loop that Python steps, and what it is asked to leave to that loop."""
+"""Runs of the compiled period alone, among others and watched, and what it is asked to leave to Python.
+
+That they are the runs that Python steps, ``tests/fuzz/paths.py`` tries on random scenarios.
+"""
 
 from __future__ import annotations
 
@@ -15,9 +18,9 @@ from scenarios.measures.online.watch import Achieved, Watch
 from scenarios.simulation.compiled.ability import together, unable
 from scenarios.simulation.compiled.runs import Runs
 from scenarios.simulation.loop import simulate, step_by_step
+from scenarios.studies.check.perturbed import perturbed
 
 PLANTS = ("single_integrator", "unicycle", "saturated", "pymunk")
-ROUNDING = 1e-10  # metres, radians, m/s: a few thousand roundings of one period, carried through some 120 periods
 
 
 def experiment(name: str, plant: str, safety: str, *changes: str, duration: float = 4.0) -> Experiment:
@@ -30,50 +33,6 @@ def states(of: Experiment, seeds: tuple[int, ...], most: int = 7) -> np.ndarray:
     found = [runs.state[None, : lanes.RECORDED].copy()]
     found += [chunk.rows.copy() for chunk in runs.advance(most, recorded=True)]
     return np.concatenate(found)
-
-
-def random_changes(rng: np.random.Generator) -> tuple[str, ...]:
-    """A random scenario that the compiled period can do, out of one of the library's."""
-    changes = [
-        "random_start.x_m=[-0.9, 0.9]",
-        f"robot.saturation='{rng.choice(['scale', 'clip'])}'",
-        f"robot.projection_distance_m={rng.uniform(0.02, 0.06):.3f}",
-        f"plant.control_period_s={rng.uniform(0.02, 0.05):.3f}",
-        f"safety.turn_rad={rng.uniform(0.0, 1.0):.2f}",
-        f"safety.stuck_time_s={rng.uniform(0.2, 2.0):.2f}",
-        f"arena.walls={rng.choice(['true', 'false'])}",
-    ]
-    if rng.random() < 0.4:
-        changes += ["sensor.position_noise_m=0.005", "sensor.bearing_noise_deg=2"]
-    if rng.random() < 0.4:
-        changes.append("obstacles=[{vertices_m=[[0.2, 0.1]], radius_m=0.05}, {vertices_m=[[-0.4, -0.3], [-0.2, 0.4]]}]")
-    return tuple(changes)
-
-
-@pytest.mark.parametrize("case", range(12))
-def test_compiled_and_stepped_runs_agree_within_rounding(case: int) -> None:
-    rng = np.random.default_rng(case)
-    name = str(rng.choice(["shape", "maneuver", "scale-only", "orientation-only"]))
-    safety, plant = str(rng.choice(["none", "decentralised"])), PLANTS[case % 4]
-    own = ("law.first_follower=spiral",) if name == "maneuver" and case % 2 else ()
-    one = experiment(name, plant, safety, *random_changes(rng), *own)
-    assert unable(one) is None
-    seeds = (case, case + 1) if together(one) else (case,)
-    stepped, advanced = step_by_step(one, case), states(one, seeds)[..., 0]
-    for field, expected in (
-        (lanes.X, stepped.poses[..., 0]),
-        (lanes.THETA, stepped.poses[..., 2]),
-        (lanes.PY, stepped.points[..., 1]),
-        (lanes.LEFT, stepped.wheel_speeds[..., 0]),
-        (lanes.INTERVENTION, stepped.intervention),
-        (lanes.RELAXATION, stepped.relaxation),
-        (lanes.STUCK, stepped.stuck),
-        (lanes.CONTACT, stepped.contact),
-        (lanes.WX, stepped.wish[..., 0]),
-        (lanes.UY, stepped.command[..., 1]),
-    ):
-        scale = 1.0 + np.nanmax(np.abs(expected), initial=0.0)
-        np.testing.assert_allclose(advanced[:, field], expected, rtol=0.0, atol=ROUNDING * scale)
 
 
 @pytest.mark.parametrize("safety", ["none", "decentralised"])
@@ -134,3 +93,18 @@ def test_sine_and_cosine_are_within_two_units_in_the_last_place() -> None:
     out = np.empty((2, len(angles)))
     both(angles, out)
     assert np.abs(out - [np.sin(angles), np.cos(angles)]).max() <= 2.0 * math.ulp(1.0)
+
+
+def test_two_ways_of_stepping_part_only_where_held_commands_are_chaotic() -> None:
+    """Above 2 l / T a heading does not settle along a command that is held (NID): rounding grows in any arithmetic."""
+    apart = {}
+    for period in (0.033, 0.005):
+        changes = ("plant.name='unicycle'", "safety.filter='none'", f"plant.control_period_s={period}")
+        one = open_experiment("random-50", changes, 2.0)
+        stepped, limit = step_by_step(one, 0), one.nid.turning_limit(period)
+        fastest = np.linalg.norm(stepped.command, axis=-1).max()
+        runs = (simulate(one, 0), step_by_step(perturbed(one, 1), 0))
+        apart[bool(fastest > limit)] = [float(np.abs(run.points - stepped.points).max()) for run in runs]
+    assert min(apart[True]) > 0.1
+    assert apart[False][0] < 1e-13
+    assert apart[False][1] < 1e-10
