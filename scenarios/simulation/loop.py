@@ -15,7 +15,7 @@ from robots import make_world
 from robots.worlds import NOTHING, World
 from scenarios.definition.events.event import OBSTACLE
 from scenarios.definition.experiment import Experiment
-from scenarios.simulation.compiled.ability import together, unable
+from scenarios.simulation.compiled.ability import side_by_side, unable
 from scenarios.simulation.controller import Controller
 from scenarios.simulation.guard import SafetyRecord
 from scenarios.simulation.outages import Outages, pushes, standing
@@ -50,13 +50,13 @@ def simulate(
     """
     if unable(experiment) is not None:
         return step_by_step(experiment, seed, on_period, on_state)
-    from scenarios.simulation.compiled.record import record, side_by_side  # loads numba
+    from scenarios.simulation.compiled.record import as_batch, record  # loads numba
 
     if isinstance(seed, int):
         return record(experiment, [seed], on_period, on_state, alone=True)
-    if together(experiment):
+    if side_by_side(experiment):
         return record(experiment, seed, on_period, on_state)
-    return side_by_side([record(experiment, [each], on_period, on_state) for each in seed])
+    return as_batch([record(experiment, [each], on_period, on_state) for each in seed])
 
 
 @np.errstate(over="ignore", invalid="ignore")

@@ -59,6 +59,7 @@ def scenario(number: int) -> Experiment:
         *maybe(0.4, f"sensor.position_noise_m={rng.uniform(0.0, 0.02):.4f}", "sensor.bearing_noise_deg=2"),
         *maybe(0.4, OBSTACLES),
         *(maybe(0.5, TWO_PHASES) if name == "maneuver" else ()),
+        *(maybe(0.3, "law.first_follower='spiral'") if name == "maneuver" else ()),
         *maybe(0.15, f"events=[{EVENTS[number % len(EVENTS)]}]"),
         *(maybe(0.1, "sensor.delay_periods=2") if plant != "single_integrator" else ()),
         *maybe(0.1, "law.activation='sequential'"),

@@ -80,7 +80,7 @@ WHOLE = frozenset({"target.angles_deg", "communication.edges"})
 """Keys whose values are no tables of the schema."""
 
 
-def together(experiment: Experiment) -> bool:
+def side_by_side(experiment: Experiment) -> bool:
     """Whether its runs advance side by side."""
     return experiment.plant != "pymunk" and experiment.n <= MOST_TOGETHER
 

@@ -44,7 +44,7 @@ def record(
     return trajectory
 
 
-def side_by_side(trajectories: Sequence[Trajectory]) -> Trajectory:
+def as_batch(trajectories: Sequence[Trajectory]) -> Trajectory:
     """The runs (T, 1, n, ...) of one experiment as one batch, as long as the shortest of them."""
     rows = min(len(each.t) for each in trajectories)
     parts = [each.until(rows) for each in trajectories]

@@ -15,7 +15,7 @@ from robots.worlds import lanes
 from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.measures.metrics import measure
 from scenarios.measures.online.watch import Achieved, Watch
-from scenarios.simulation.compiled.ability import together, unable
+from scenarios.simulation.compiled.ability import side_by_side, unable
 from scenarios.simulation.compiled.runs import Runs
 from scenarios.simulation.loop import simulate, step_by_step
 from scenarios.studies.check.perturbed import perturbed
@@ -47,7 +47,7 @@ def test_a_run_has_the_same_bits_alone_and_among_others_in_chunks_of_any_length(
 def test_what_is_watched_is_what_is_measured(plant: str, safety: str) -> None:
     one = experiment("shape", plant, safety, "random_start.x_m=[-1.4, 1.4]", "goal.accepted=true", duration=30.0)
     found: list[Achieved | None] = []
-    for seeds in [(1, 2)] if together(one) else [(1,), (2,)]:
+    for seeds in [(1, 2)] if side_by_side(one) else [(1,), (2,)]:
         runs = Runs(one, seeds)
         watch = Watch(one, runs.state)
         for chunk in runs.advance(16):
