@@ -17,6 +17,9 @@ from scenarios.errors import InputError, did_you_mean, located
 
 Real = NDArray[np.float64]
 
+TRIANGLE = "triangle"
+"""The condition of laws for three agents, which no choice of edges meets for more."""
+
 
 @dataclass(frozen=True, eq=False)
 class Aim:
@@ -72,9 +75,9 @@ def _with_graph(path: str, scenario: Scenario, aim: Aim, condition: str) -> Aim:
     try:
         CONDITIONS[condition](aim.formation)
     except ValueError as error:
+        offer = "" if condition == TRIANGLE else '; graph = "design" builds one'
         raise InputError(
-            f'{path}: agents: the {scenario.law.name} law needs a graph that is {condition}: {error}; graph = "design" '
-            "builds one"
+            f"{path}: agents: the {scenario.law.name} law needs a graph that is {condition}: {error}{offer}"
         ) from error
     return aim
 

@@ -15,11 +15,8 @@ from formation.graph.designs import DESIGNS, design
 from formation.measurements import ANGLE, RATIO
 from robots import Instruments
 from scenarios.definition.experiment import Experiment
-from scenarios.definition.formations import Aim
+from scenarios.definition.formations import TRIANGLE, Aim
 from scenarios.errors import InputError, did_you_mean
-
-TRIANGLE = "triangle"
-"""The condition of laws for three agents; they run for the first three of the target."""
 
 HORIZON = 120.0
 """Seconds until which a law has to be right."""

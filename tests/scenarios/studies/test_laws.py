@@ -165,7 +165,7 @@ def test_any_scenario_runs_any_law_that_builds_its_graph(law: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("law", "why"), [("cosine", "edge (2, 1) is sensed from one end"), ("triangle-angles", "3 agents")]
+    ("law", "why"), [("cosine", "edge (2, 1) is sensed from one end"), ("bisector", "graph that is signed angles")]
 )
 def test_a_law_on_a_graph_of_another_kind_is_refused_in_one_line_with_the_way_out(law: str, why: str) -> None:
     with pytest.raises(InputError) as refused:
