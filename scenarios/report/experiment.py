@@ -148,6 +148,8 @@ def _print_agents(console: Console, experiment: Experiment, start: Any, end: Any
         )
     print_table(console, table)
     _print_rest(console, graph.n, "agents")
+    if late is not None and experiment.safety != "none":
+        console.print("late rate: of the law alone; a filter that still acts near the end moves it (docs/theory.md)")
     if still:
         console.print("(c3): a follower with a positive margin that starts after its neighbours settled avoids both")
 
