@@ -82,7 +82,7 @@ def test_displacement_decays_at_rate_one_and_shape_and_velocity_follow(seed: int
     edges = target.graph.edges
     law = AngleLaw(target, "displacement")
     velocity = law((points[edges[:, 1]] - points[edges[:, 0]]), np.tile([1.0, 0.0], (7, 1)), delta)
-    np.testing.assert_allclose(velocity, 0.0, atol=1e-9)  # eq. (mane2): only v_r is left
+    np.testing.assert_allclose(velocity, 0.0, atol=1e-9)  # eq. (mane2), of agent 2 as well: only v_r is left
 
 
 @given(seed=st.integers(0, 2**32 - 1), scale=st.floats(0.1, 10.0), turn=st.floats(0.0, 6.2))
