@@ -12,7 +12,7 @@ SCENARIO ?= shape
 export OMP_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install run test quick lint check bench peers figures dist lowest mutants fuzz kills pairs evidence screenshots gallery docs docs-check clean
+.PHONY: help install run test compile quick lint check bench peers figures dist lowest mutants fuzz kills pairs evidence screenshots gallery docs docs-check clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -29,8 +29,12 @@ $(STAMP): pyproject.toml constraints.txt
 run: $(STAMP) ## run a scenario (SCENARIO=shape)
 	$(BIN)/formation run $(SCENARIO)
 
-test: lint ## lint, type check and the whole test suite
+test: $(STAMP) ## lint, type check and the whole test suite
+	$(MAKE) --no-print-directory -j 2 lint compile
 	$(BIN)/pytest -n auto
+
+compile: $(STAMP) ## compile what commands compile once, before processes that start together would each do it
+	$(BIN)/python -m tests.compile
 
 quick: $(STAMP) ## the test suite without the Monte Carlo runs
 	$(BIN)/pytest -n auto -m 'not slow'
@@ -108,7 +112,7 @@ pairs: $(STAMP) ## two of every writing command into one place at once: one is r
 	$(BIN)/python -m tests.fuzz.pairs
 
 evidence: $(STAMP) ## the Monte Carlo evidence over all seeds, printed (about 20 minutes)
-	EVIDENCE_SEEDS=500 $(BIN)/pytest tests/evidence -q -n auto --dist load -rP
+	EVIDENCE_SEEDS=500 $(BIN)/pytest tests/evidence tests/scenarios/simulation/test_loop.py -q -n auto --dist load -rP
 
 screenshots: $(STAMP) ## pictures of the viewer for docs/recording.md (needs xvfb, Vulkan in software, chromium)
 	$(BIN)/python docs/screenshots.py

@@ -2,8 +2,12 @@
 
 Of all mutants of ``formation/`` and of ``robots/`` a seeded sample is made, each in a copy of the project, and the
 tests of that floor which run the changed line are run on it, the quickest first, until one fails. A mutant that all of
-them pass has survived. Compiled functions are compiled anew for every mutant of theirs; which lines a test runs is
-found with the compiler off.
+them pass has survived. Of a line that only an import runs, a constant, they are the tests that run the rest of its
+file.
+
+Which lines a test runs is found with the compiler off. A mutant of a compiled function meets the quick tests that way
+too, which spares most of them the compiler, and only then the others as machine code. A test that fails with the
+compiler off, where a division by zero raises, is one of the others.
 
 Neither mutmut nor cosmic-ray does this: the first wraps every function in one that numba cannot compile, the second
 runs one command, the same for each mutant. So the choice is ours; coverage.py finds the lines and pytest runs.
@@ -12,10 +16,13 @@ runs one command, the same for each mutant. So the choice is ours; coverage.py f
 from __future__ import annotations
 
 import argparse
+import contextlib
+import importlib
 import json
 import math
 import os
 import random
+import re
 import resource
 import shutil
 import signal
@@ -25,6 +32,7 @@ import time
 import tomllib
 import traceback
 from collections.abc import Callable
+from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
@@ -40,8 +48,16 @@ EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 CPU_LIMIT = 240
 """Seconds of processor time after which a mutant counts as noticed: it never ends."""
 
-QUIET = ["-q", "-x", "--no-header", "-p", "no:cacheprovider", "-m", "not slow"]
-KERNEL = "robots/safety/step.py"
+COMPILED = re.compile(r"^@_?(compiled|inlined)$", re.MULTILINE)
+PYTHON = ["-W", "ignore::RuntimeWarning"]
+"""Uncompiled, a division by zero says what it does not say compiled."""
+
+PLUGINS = ("_", "pytest", "xdist", "execnet", "hypothesis")
+"""Modules that pytest wants to load itself."""
+
+QUIET = ["-q", "--no-header", "-p", "no:cacheprovider", "-m", "not slow"]
+WITHOUT_COMPILER = 10.0
+"""Seconds for which the tests of a compiled function run uncompiled, before they are worth a compilation."""
 
 
 class Watch:
@@ -50,6 +66,7 @@ class Watch:
     def __init__(self, cover: coverage.Coverage | None = None) -> None:
         self.cover = cover
         self.seconds: dict[str, float] = {}
+        self.failed: set[str] = set()
 
     def pytest_runtest_logstart(self, nodeid: str) -> None:
         """A test begins."""
@@ -59,6 +76,8 @@ class Watch:
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """A part of a test has ended."""
         self.seconds[report.nodeid] = self.seconds.get(report.nodeid, 0.0) + report.duration
+        if report.failed:
+            self.failed.add(report.nodeid)
 
 
 def forked(work: Callable[[], int], log: Path) -> int:
@@ -93,50 +112,73 @@ def survey(copy: Path, floor: str, log: Path) -> None:
         cover = coverage.Coverage(data_file=None, source=[floor])
         watch = Watch(cover)
         cover.start()
-        code = pytest.main([*QUIET, "-W", "ignore::RuntimeWarning", f"tests/{floor}", floor], [watch])
+        code = pytest.main([*QUIET, *PYTHON, f"tests/{floor}", floor], [watch])
         cover.stop()
         data = cover.get_data()
         lines = {
             str(Path(file).relative_to(copy)): {str(n): c for n, c in data.contexts_by_lineno(file).items()}
             for file in data.measured_files()
         }
-        (copy / f"{floor}.json").write_text(json.dumps({"lines": lines, "seconds": watch.seconds}))
-        return int(code)
+        found = {"lines": lines, "seconds": watch.seconds, "failed": sorted(watch.failed), "modules": foreign()}
+        (copy / f"{floor}.json").write_text(json.dumps(found))
+        return 0 if code in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED) else 1
 
     if forked(work, log) != 0:
-        sys.exit(f"the tests of {floor} fail without a mutant: {log.read_text()[-2000:]}")
+        sys.exit(f"the tests of {floor} do not run without a mutant: {log.read_text()[-2000:]}")
+
+
+def foreign() -> list[str]:
+    """The loaded modules that are neither the project's nor pytest's."""
+    return sorted(
+        name
+        for name, module in sys.modules.items()
+        if "site-packages" in (getattr(module, "__file__", None) or "") and not name.startswith(PLUGINS)
+    )
+
+
+def load(modules: list[str]) -> None:
+    """Import what no mutant changes once, before the processes of the mutants part from this one."""
+    for name in modules:
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)
 
 
 def choose(mutant: Mutant, seen: dict[str, Any]) -> list[str]:
-    """The tests that run a mutant's line, the quickest first; of a line that an import runs, all of the floor."""
+    """The tests that run a mutant's line, where an import does its file, or else all of them; the quickest first."""
     lines = seen["lines"].get(mutant.path, {})
-    named = [name for name in lines.get(str(mutant.line), []) if name]
+    named = {name for name in lines.get(str(mutant.line), []) if name}
+    named = named or {name for names in lines.values() for name in names if name}
     return sorted(named or seen["seconds"], key=seen["seconds"].__getitem__)
 
 
-def survives(mutant: Mutant, copy: Path, tests: list[str], log: Path, compiled: Path) -> bool:
-    """Whether all ``tests`` pass with a mutant in the copy."""
+def survives(mutant: Mutant, copy: Path, tests: list[str], seen: dict[str, Any], log: Path, kept: Path) -> bool:
+    """Whether all ``tests`` pass with a mutant in the copy; machine code is kept in the folder ``kept``."""
     file = copy / mutant.path
     source, stamp = file.read_text(encoding="utf-8"), file.stat()
     file.write_text(mutant.applied(source), encoding="utf-8")
-    cache = compiled
-    if mutant.path == KERNEL:
-        cache = Path(tempfile.mkdtemp(dir=copy.parent))
 
-    def work() -> int:
-        numba.config.CACHE_DIR = str(cache)
-        os.chdir(copy)
-        sys.path.insert(0, str(copy))
-        sys.dont_write_bytecode = True
-        return int(pytest.main([*QUIET, *tests]))
+    def passes(some: list[str], compiler: bool) -> bool:
+        def work() -> int:
+            numba.config.DISABLE_JIT = not compiler
+            numba.config.CACHE_DIR = str(kept)
+            os.chdir(copy)
+            sys.path.insert(0, str(copy))
+            sys.dont_write_bytecode = True
+            return int(pytest.main([*QUIET, "-x", *(() if compiler else PYTHON), *some]))
 
-    try:
         return forked(work, log) == 0
+
+    quick = []
+    if COMPILED.search(source):
+        able = [name for name in tests if name not in seen["failed"]]
+        sums = accumulate(seen["seconds"][name] for name in able)
+        quick = [name for name, total in zip(able, sums, strict=True) if total < WITHOUT_COMPILER]
+    rest = [name for name in tests if name not in quick]
+    try:
+        return (not quick or passes(quick, False)) and (not rest or passes(rest, True))
     finally:
         file.write_text(source, encoding="utf-8")
         os.utime(file, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
-        if cache != compiled:
-            shutil.rmtree(cache)
 
 
 def interval(killed: int, of: int, z: float = 1.96) -> tuple[float, float]:
@@ -169,6 +211,7 @@ def main() -> None:
             started = time.monotonic()
             survey(copy, floor, log)
             seen = json.loads((copy / f"{floor}.json").read_text())
+            load(seen["modules"])
             every = [
                 mutant
                 for path in sorted((copy / floor).rglob("*.py"))
@@ -181,7 +224,7 @@ def main() -> None:
             tried = [m for m in sample if m not in alike]
             killed = 0
             for mutant in tried:
-                if not survives(mutant, copy, choose(mutant, seen), log, compiled):
+                if not survives(mutant, copy, choose(mutant, seen), seen, log, compiled):
                     killed += 1
                     continue
                 print(f"{mutant.path}:{mutant.line}\n  - {mutant.before}\n  + {mutant.after}", flush=True)

@@ -1,5 +1,6 @@
-"""The loop: the theorem's rates and ends, seeds, noise, batches, contact over a hundred seeds."""
+"""The loop: the theorem's rates and ends, seeds, noise, batches, contact over many seeds."""
 
+import os
 from collections.abc import Callable
 from itertools import combinations
 
@@ -17,6 +18,7 @@ from scenarios.simulation.loop import simulate
 from scenarios.simulation.schedule import periods
 
 Varied = Callable[..., Experiment]
+SEEDS = min(100, int(os.environ.get("EVIDENCE_SEEDS", "12")))
 NOISE = ("sensor.position_noise_m=0.005", "sensor.bearing_noise_deg=1.0")
 
 
@@ -167,10 +169,10 @@ def test_the_measured_penetration_is_exact_on_boxes_placed_by_hand() -> None:
 
 
 @pytest.mark.slow
-def test_over_100_seeds_without_filter_the_shape_is_reached_and_contact_is_physical(
+def test_over_many_seeds_without_filter_the_shape_is_reached_and_contact_is_physical(
     varied: Varied, monkeypatch: pytest.MonkeyPatch, record_property: Callable[[str, object], None]
 ) -> None:
-    """At least 98 of 100 reach the goal; at every solver step of every run no two chassis overlap by more than 3 mm;
+    """At least 98 % reach the goal; at every solver step of every run no two chassis overlap by more than 3 mm;
     in no run does a robot slip sideways by more than 1 mm.
 
     Sideways slip is the sum over control periods of what the axle's centre moves across its mean heading, in absolute
@@ -190,7 +192,7 @@ def test_over_100_seeds_without_filter_the_shape_is_reached_and_contact_is_physi
     pairs = np.array(list(combinations(range(shape.n), 2)))
     touches = (pairs[:, :, None] == np.arange(shape.n)).any(axis=1)  # (pairs, n)
     reached, deepest, slipped, contacts = 0, 0.0, 0.0, 0
-    for seed in range(100):
+    for seed in range(SEEDS):
         states.clear()
         run = simulate(shape, seed)
         reached += bool(measure(shape, run).error_sum[-1] < 0.01)
@@ -208,10 +210,10 @@ def test_over_100_seeds_without_filter_the_shape_is_reached_and_contact_is_physi
     for name, value in (("reached", reached), ("deepest_m", deepest), ("slipped_m", slipped), ("contacts", contacts)):
         record_property(name, value)
     print(
-        f"\n{reached}/100 reach the goal, {contacts} have contacts, overlap {deepest * 1e3:.2f} mm, "
+        f"\n{reached}/{SEEDS} reach the goal, {contacts} have contacts, overlap {deepest * 1e3:.2f} mm, "
         f"sideways {slipped * 1e3:.2f} mm"
     )
-    assert reached >= 98
-    assert contacts >= 50, "robots that follow the law literally do meet"
+    assert reached >= 0.98 * SEEDS
+    assert contacts >= SEEDS / 2, "robots that follow the law literally do meet"
     assert deepest < 3e-3
     assert slipped < 1e-3

@@ -78,6 +78,12 @@ def own(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "own"
 
 
+@pytest.fixture
+def no_folders(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave out the run folders of what was missed, which take most of the time: for tests of the verdict alone."""
+    monkeypatch.setattr(command, "write_folders", lambda missed, out: {})
+
+
 CHECK = ("check", "--baselines", "baselines", "--workers", 1)
 
 
@@ -137,6 +143,7 @@ def filter_off(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         filter_off,
     ],
 )
+@pytest.mark.usefixtures("no_folders")
 def test_a_mutation_is_caught_even_by_what_another_machine_is_allowed(
     mutation: Callable[[Path, pytest.MonkeyPatch], None], own: Path, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -163,6 +170,7 @@ def test_a_thousandth_of_a_radian_is_reported_as_the_worst_angle_with_a_run_fold
     assert all(is_run(folder) and folder.parent == Path("runs/check") for folder in folders)
 
 
+@pytest.mark.usefixtures("no_folders")
 def test_the_last_digit_counts_on_the_same_machine_and_not_on_another(own: Path, run: Run) -> None:
     def nudge(content: dict) -> None:
         entry = content["runs"][0]["numbers"]["alpha(4;1,6).final_rad"]
@@ -184,6 +192,7 @@ def test_a_release_of_this_project_does_not_make_another_machine() -> None:
     assert not same_bits(here, {**here, "numpy": "99"})
 
 
+@pytest.mark.usefixtures("no_folders")
 def test_texts_have_to_be_equal(own: Path, run: Run) -> None:
     edit(own / "baselines/shape.json", lambda content: content["runs"][0]["texts"].update(safety="another"))
     code, out, _ = run(*CHECK, "--portable")

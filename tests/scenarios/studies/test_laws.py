@@ -223,12 +223,13 @@ def settled_with_loss(loss: float, runs: int, seed: int, period: float = 0.033) 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("loss", [0.2, 0.5])
-def test_lost_edges_slow_the_angle_law_as_an_independent_computation_says(loss: float) -> None:
+@pytest.mark.parametrize(("loss", "duration"), [(0.2, 35.0), (0.5, 80.0)], ids=["a fifth", "half"])
+def test_lost_edges_slow_the_angle_law_as_an_independent_computation_says(loss: float, duration: float) -> None:
+    """The median of the times to 1 cm; a run that takes longer than the duration counts as one that takes it all."""
     box = ("random_start.x_m=[-1.5, 1.5]", "random_start.y_m=[-1.5, 1.5]", "random_start.min_separation_m=0")
     changes = (f"sensor.edge_loss={loss}", "plant.name=single_integrator", *box)
-    experiment = open_experiment("shape", changes, duration=160.0)
-    points = simulate(experiment, range(300)).points
+    experiment = open_experiment("shape", changes, duration=duration)
+    points = simulate(experiment, range(100)).points
     star = as_complex(PAPER.positions)
     p = as_complex(points)
     end = p[0, :, :1] + (star - star[0]) * ((p[0, :, 1] - p[0, :, 0]) / (star[1] - star[0]))[:, None]
