@@ -91,12 +91,12 @@ def check(
     return found
 
 
-def rehearse(experiment: Experiment, text: str) -> Arrival:
-    """One run of an exported script on ``saturated``, robots standing at their start at once: the kindest of all."""
+def rehearse(experiment: Experiment, text: str, seed: int) -> Arrival:
+    """One run of an exported script on ``saturated``, robots standing somewhere within the testbed's tolerance."""
     with tempfile.TemporaryDirectory(prefix="formation-export-") as folder:
         path = Path(folder) / "rehearsal.py"
         path.write_text(text.replace("SHOW_FIGURE = True", "SHOW_FIGURE = False"), encoding="utf-8")
-        return _run(experiment, path, "saturated", 0, Session("saturated", "exact"))
+        return _run(experiment, path, "saturated", seed, Session("saturated", "near", np.random.default_rng(seed)))
 
 
 def arrival(experiment: Experiment, path: Path, plant: str, seed: int) -> Arrival:
