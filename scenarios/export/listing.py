@@ -81,5 +81,4 @@ def corners(experiment: Experiment, triples: Rows, what: str, values: Sequence[S
 
 def saying(experiment: Experiment) -> str:
     """The first line of the law's own page."""
-    page = sys.modules[type(experiment.law).__module__].__doc__ or ""
-    return f"{page.partition(chr(10))[0]}"
+    return (sys.modules[type(experiment.law).__module__].__doc__ or "").partition("\n")[0]

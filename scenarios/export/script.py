@@ -44,7 +44,7 @@ def script(experiment: Experiment, seed: int = 0) -> str:
         filtering=safety.used,
         indices=rows_by_number(experiment) + law.indices,
         body=law.body,
-        more_functions=course.pop("timed_functions") + safety.functions,
+        more_functions=course["timed_functions"] + safety.functions,
         **course,
         **_estimation(experiment),
         **_activation(experiment),
