@@ -187,7 +187,7 @@ OPTIONS: dict[str, tuple[list[str], tuple[str, ...]]] = {
     "replay": (["sound"], ("--web",)),
     "plot": (["sound", "--format", "svg"], ("--out", "--format")),
     "animate": (["sound", "--speed", "1000"], ("--format", "--speed", "--fps", "--out")),
-    "laws": (["--starts", "3"], ("--starts", "--markdown")),
+    "laws": (["--starts", "1"], ("--starts", "--markdown")),
     "audit": (["shape", "--starts", "0"], ("--starts", "--set", "--markdown")),
     "keys": ([], ("--markdown",)),
     "check": (
@@ -253,7 +253,7 @@ def option_case(rng: random.Random, folder: Path) -> tuple[list[str], str | None
     if arguments[0] == "reproduce":
         arguments += ["--workers", "0"]  # it takes minutes
     if arguments[0] == "laws" and "--starts" not in arguments:
-        arguments += ["--starts", "3"]
+        arguments += ["--starts", "1"]
     answer = command(*arguments)
     wrong = complaint(answer, *arguments, "--", "argument", "command")
     if wrong is None and (folder / "full" / "thesis.tex").exists() is False:
