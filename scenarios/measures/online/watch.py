@@ -101,12 +101,11 @@ class Watch:
         return [self._of(m, float(errors[m]), float(axle_errors[m])) if whole[m] else None for m in range(len(whole))]
 
     def _error_sums(self, x: int) -> Real:
-        """(L,) of the states as they are, at the points whose x is the field ``x``, the next one their y."""
-        from scenarios.measures.online.watching import error_sums
-
-        found = np.empty(self._state.shape[2])
-        error_sums(self._state[x], self._state[x + 1], self._angles, found)
-        return found
+        """(L,) of the states as they are, at the points whose x is a field: those of trajectories, bit for bit."""
+        places = np.ascontiguousarray(self._state[x : x + 2].T)
+        errors = self._experiment.angles.errors(places, self._experiment.target_angles)
+        sums: Real = np.abs(errors).sum(axis=-1)
+        return sums
 
     def _of(self, m: int, error_sum: float, axle_error_sum: float) -> Achieved:
         experiment, last, least = self._experiment, int(self._seen.last_above[m]), float(self._seen.least[m])

@@ -220,13 +220,6 @@ def _drift(square: float, way: float, angles: int) -> float:
 
 
 @compiled
-def error_sums(x: Real, y: Real, angles: Angles, found: Real) -> None:
-    """Set ``found`` (L,) to the sums of the absolute angle errors, radians, at x and y (n, L), metres."""
-    for m in range(len(found)):
-        found[m] = _error_sum(x[:, m], y[:, m], angles)
-
-
-@compiled
 def _bounds(x: Real, y: Real, angles: Angles, low: Real, high: Real) -> None:
     """Bounds of the sum of the absolute errors: b / (a + b) <= |atan2(b, a)| <= b / a for a >= 0, b >= 0."""
     low[:], high[:] = 0.0, 0.0
