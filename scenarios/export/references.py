@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from formation import Phase
@@ -9,6 +11,7 @@ from formation.references.curves import ClosedCurve
 from formation.references.ramps import Ramps
 from formation.references.way_points import WayPoints
 from scenarios.definition.experiment import Experiment
+from scenarios.definition.schema import RampTable
 from scenarios.errors import InputError
 from scenarios.export.wording import number, table
 
@@ -25,9 +28,8 @@ def reference_text(experiment: Experiment, phase: Phase) -> tuple[str, str]:
         constants, function = _curve(reference)
         return f"\n{delta}{constants}", function
     if isinstance(reference, Ramps) and experiment.scenario.reference is not None:
-        listed = experiment.scenario.reference.velocities
-        rows = table((repr(each.t_s), number(complex(*each.velocity_m_s))) for each in listed)
-        return f"\n{delta}" + RAMPS.format(rows=rows), TOLD + BETWEEN_RAMPS
+        constants, function = _ramps(experiment.scenario.reference.velocities)
+        return f"\n{delta}{constants}", TOLD + function
     if isinstance(reference, WayPoints) and experiment.scenario.reference is not None:
         return f"\n{delta}" + _way_points(experiment, reference), TOLD + BETWEEN_WAY_POINTS
     raise InputError(f"{path}: reference.function: a script for the testbed cannot carry it, expected none")
@@ -81,6 +83,28 @@ TIMES, VELOCITIES = np.array(RAMPS).T
 
 BETWEEN_RAMPS = "    return np.interp(t, TIMES.real, VELOCITIES), 1, 0\n"
 
+CHANGING_RAMPS = """\
+# Time (s), the velocity of all then, and the formation's scale and turn (rad);
+# straight lines in between.
+RAMPS = [
+{rows}
+]
+TIMES, VELOCITIES, SCALES, TURNS = np.array(RAMPS).T
+"""
+
+BETWEEN_CHANGING_RAMPS = """\
+    velocity, scale, turn = (
+        np.interp(t, TIMES.real, each) for each in (VELOCITIES, SCALES, TURNS)
+    )
+    k = np.searchsorted(TIMES.real, t + PERIOD / 2)  # where lines meet, the next
+    rate = 0
+    if k < len(TIMES):
+        length = TIMES[k] - TIMES[k - 1]
+        rate = (SCALES[k] - SCALES[k - 1]) / length / scale
+        rate += 1j * (TURNS[k] - TURNS[k - 1]) / length
+    return velocity, scale * np.exp(1j * turn), rate
+"""
+
 WAY = """\
 # Time (s), place (m) and velocity (m/s) of agent {leader}, logarithm of what
 # delta is multiplied by, and its rate (1/s); cubic in between.
@@ -125,6 +149,17 @@ def _curve(curve: ClosedCurve) -> tuple[str, str]:
         return constants, TOLD + function + TURNING
     constants, function = constants[: constants.index("BEGIN")], function[: function.index("    bend")]
     return constants, TOLD + function + "    return PACE * AIM * tangent, 1, 0\n"
+
+
+def _ramps(listed: Sequence[RampTable]) -> tuple[str, str]:
+    first = listed[0]
+    rows = [(repr(each.t_s), number(complex(*each.velocity_m_s))) for each in listed]
+    ratios = [each.scale / first.scale for each in listed]
+    turns = [float(np.radians(each.turn_deg - first.turn_deg)) for each in listed]
+    if set(ratios) == {1.0} and set(turns) == {0.0}:
+        return RAMPS.format(rows=table(rows)), BETWEEN_RAMPS
+    whole = [(*row, repr(ratio), repr(turn)) for row, ratio, turn in zip(rows, ratios, turns, strict=True)]
+    return CHANGING_RAMPS.format(rows=table(whole)), BETWEEN_CHANGING_RAMPS
 
 
 def _way_points(experiment: Experiment, reference: WayPoints) -> str:

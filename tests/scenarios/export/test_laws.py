@@ -59,7 +59,15 @@ def test_wrapped_errors_and_gains_of_ones_own_are_in_the_script(functions: Funct
         {"kind": "figure-eight", "width_m": 0.5, "height_m": 0.3, "period_s": 40.0, "clockwise": True},
         {
             "kind": "ramps",
-            "velocities": [{"t_s": 0.0, "velocity_m_s": [0, 0]}, {"t_s": 3.0, "velocity_m_s": [0.03, -0.02]}],
+            "velocities": [{"t_s": 0.0, "velocity_m_s": [0, 0]}, {"t_s": 91 * 0.033, "velocity_m_s": [0.03, -0.02]}],
+        },
+        {
+            "kind": "ramps",
+            "velocities": [
+                {"t_s": 0.0, "velocity_m_s": [0.01, 0]},
+                {"t_s": 91 * 0.033, "velocity_m_s": [0.02, -0.01], "scale": 0.9, "turn_deg": 15.0},
+                {"t_s": 150 * 0.033, "velocity_m_s": [0.0, 0.0], "scale": 0.95, "turn_deg": 5.0},
+            ],
         },
         {
             "kind": "way-points",

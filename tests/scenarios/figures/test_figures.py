@@ -122,8 +122,9 @@ def test_robots_are_shown_at_the_times_that_are_asked_for(shape: Ran) -> None:
     figure = draw(shape.experiment, shape.trajectory, shape.metrics, "motion", (30.0, 0.0, 7.02))
     times = ("0 s", "7 s", "30 s")
     assert set(times) <= set(texts(figure))
-    bodies = [c.get_paths() for c in figure.axes[0].collections if isinstance(c, PolyCollection)]
-    for row, drawn in zip(rows_at(shape.trajectory, (0.0, 7.02, 30.0)), bodies[::2], strict=True):
+    polygons = [c for c in figure.axes[0].collections if isinstance(c, PolyCollection)]
+    bodies = [c.get_paths() for c in polygons if c.get_zorder() == 4]  # below are arrows on edges, above noses
+    for row, drawn in zip(rows_at(shape.trajectory, (0.0, 7.02, 30.0)), bodies, strict=True):
         assert abs(shape.trajectory.t[row] - round(shape.trajectory.t[row])) < 0.03
         expected = placed(shape.experiment.fleet.outlines, shape.trajectory.poses[row])
         np.testing.assert_allclose([path.vertices[:4] for path in drawn], expected)

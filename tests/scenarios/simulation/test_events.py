@@ -10,6 +10,7 @@ from robots.testbed import OBSTACLE_DISTANCE
 from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.errors import InputError
 from scenarios.figures.films.film import Film
+from scenarios.figures.films.layout import Frame
 from scenarios.figures.style import print_style
 from scenarios.measures.metrics import measure
 from scenarios.measures.predictions.remarks import remarks
@@ -207,7 +208,7 @@ def test_a_film_shows_an_obstacle_of_an_event_while_it_stands() -> None:
     experiment = opened(one("obstacle", vertices_m=[[1.2, 0.8]], radius_m=0.1, until_s=UNTIL), plant="saturated")
     trajectory = simulate(experiment, 0)
     with print_style():
-        film = Film(experiment, trajectory, measure(experiment, trajectory), 1.0, 1.0)
+        film = Film(experiment, trajectory, measure(experiment, trajectory), 1.0, 1.0, Frame())
     x, y = film.floor.transData.transform([1.2, 0.8]).astype(int)
     with print_style():
         seen = [tuple(frame[frame.shape[0] - y, x, :3]) != (255, 255, 255) for frame in film.frames()]

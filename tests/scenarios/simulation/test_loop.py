@@ -5,16 +5,15 @@ from collections.abc import Callable
 from itertools import combinations
 
 import numpy as np
-import pymunk
 import pytest
-from pymunk import batch
 
 from formation import agents, decay_rates, end_configuration
 from robots import GTERNAL, PLANTS
+from robots.worlds import bodies, chipmunk, contact
 from robots.worlds.contact import SUBSTEPS
 from scenarios.definition.experiment import Experiment
 from scenarios.measures.metrics import measure
-from scenarios.simulation.loop import simulate
+from scenarios.simulation.loop import simulate, step_by_step
 from scenarios.simulation.schedule import periods
 
 Varied = Callable[..., Experiment]
@@ -179,30 +178,30 @@ def test_over_many_seeds_without_filter_the_shape_is_reached_and_contact_is_phys
     value. It counts on free floor: no contact in the period nor in the one before, in which tyres stop a shoved robot.
     """
     shape = varied("safety.filter=none")
-    solve, buffer = pymunk.Space.step, batch.Buffer()
     states: list[np.ndarray] = []
 
-    def recorded(space: pymunk.Space, dt: float) -> None:
-        solve(space, dt)
-        buffer.clear()
-        batch.get_space_bodies(space, batch.BodyFields.POSITION | batch.BodyFields.ANGLE, buffer)
-        states.append(np.frombuffer(buffer.float_buf()).reshape(-1, 3)[: shape.n].copy())
+    def recorded(driven: chipmunk.Bodies, steps: int, dt: float) -> None:
+        for _ in range(steps):
+            chipmunk.drive(driven, 1, dt)
+            states.append(driven.state[: shape.n, : chipmunk.BODY_VX].copy())
+            driven.command[: shape.n] = driven.state[: shape.n, chipmunk.BODY_VX :]
 
-    monkeypatch.setattr(pymunk.Space, "step", recorded)
+    monkeypatch.setattr(bodies, "drive", recorded)
+    monkeypatch.setattr(contact, "move", bodies.move.py_func)  # type: ignore[attr-defined]
     pairs = np.array(list(combinations(range(shape.n), 2)))
     touches = (pairs[:, :, None] == np.arange(shape.n)).any(axis=1)  # (pairs, n)
     reached, deepest, slipped, contacts = 0, 0.0, 0.0, 0
     for seed in range(SEEDS):
         states.clear()
-        run = simulate(shape, seed)
+        run = step_by_step(shape, seed)
         reached += bool(measure(shape, run).error_sum[-1] < 0.01)
         depth = penetration(np.array(states))
         deepest = max(deepest, float(depth.max()))
         near = (depth > -5e-4).reshape(-1, SUBSTEPS, len(pairs)).any(axis=1)
-        contact = (near[:, :, None] & touches).any(axis=1)
-        contacts += bool(contact.any())
-        free = ~contact
-        free[1:] &= ~contact[:-1]
+        touching = (near[:, :, None] & touches).any(axis=1)
+        contacts += bool(touching.any())
+        free = ~touching
+        free[1:] &= ~touching[:-1]
         step = np.diff(run.poses, axis=0)
         middle = run.poses[:-1, :, 2] + step[..., 2] / 2.0
         sideways = np.abs(step[..., 1] * np.cos(middle) - step[..., 0] * np.sin(middle))
