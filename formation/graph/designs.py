@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from itertools import combinations
+from math import comb
 from types import MappingProxyType
 
 import numpy as np
@@ -15,8 +16,11 @@ from formation.graph.constructions import angle_slopes
 from formation.graph.directed import DirectedGraph
 from formation.plane import Complex, as_complex
 
-MOST_TRIPLES = 400
-"""Triples of agents from which a graph for signed angles is grown, at most."""
+MOST_CHOICES = 200_000
+"""Neighbours weighed for a graph for signed angles, all growths together: some seconds."""
+
+NEAREST = 8
+"""Placed agents among which an agent's three neighbours are sought; all of so few, the nearest of more."""
 
 
 def design(condition: str, formation: Framework) -> Framework:
@@ -110,10 +114,11 @@ def lateration(formation: Framework) -> DirectedGraph:
 def signed_angles(formation: Framework) -> DirectedGraph:
     """Grown from the triple of agents from which the slowest follower is fastest; each takes its best three."""
     p = as_complex(formation.positions)
-    starts = [t for t in combinations(range(len(p)), 3) if _roundness(p, list(t)) > 0.05][:MOST_TRIPLES]
-    grown = [_grow(p, start) for start in starts]
-    if not grown:
+    starts = [t for t in combinations(range(len(p)), 3) if _roundness(p, list(t)) > 0.05]
+    if not starts:
         raise ValueError("all agents are collinear in the target")
+    most = max(1, MOST_CHOICES // (comb(min(len(p), NEAREST), 3) * len(p) ** 2))
+    grown = [_grow(p, start) for start in starts[:most]]
     _, edges = max(grown, key=lambda each: each[0])
     return DirectedGraph(len(p), np.array(edges))
 
@@ -154,13 +159,21 @@ def _grow(p: Complex, start: tuple[int, ...]) -> tuple[float, list[tuple[int, in
             (angle_rate(p[sorted(t)] - p[k]), k, t)
             for k in range(len(p))
             if k not in placed
-            for t in combinations(placed, 3)
+            for t in combinations(_near(p, placed, k), 3)
         ]
         rate, k, best = max(options) if len(placed) > 3 else max(options, key=lambda each: each[0])
         slowest = min(slowest, rate)
         edges += [(k, i) for i in best]
         placed.append(k)
     return slowest, edges
+
+
+def _near(p: Complex, placed: list[int], k: int) -> list[int]:
+    """The agents of ``placed``, in their order, that are nearest to agent k."""
+    if len(placed) <= NEAREST:
+        return placed
+    kept = set(sorted(placed, key=lambda i: abs(p[i] - p[k]))[:NEAREST])
+    return [i for i in placed if i in kept]
 
 
 def angle_rate(rays: Complex) -> float:
