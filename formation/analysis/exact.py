@@ -152,11 +152,10 @@ class _Stretch:
 
 def _driven(cascade: Cascade, row: int) -> Complex:
     """(n,) what 1 m of the drive does each second to the agents from ``row`` on."""
-    driven = np.zeros(cascade.n, dtype=np.complex128)
     if row == agents.FIRST_FOLLOWER:
-        driven[row] = cascade.rates[0]
-    else:
-        driven[ROW:] = cascade.rows[ROW:, [agents.FIRST_FOLLOWER]].toarray()[:, 0]
+        return cascade.rates[0] * np.eye(1, cascade.n, row, dtype=np.complex128)[0]
+    driven = cascade.apply(np.eye(1, cascade.n, agents.FIRST_FOLLOWER, dtype=np.complex128)[0])
+    driven[:ROW] = 0.0
     return driven
 
 
