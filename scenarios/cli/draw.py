@@ -27,8 +27,9 @@ if TYPE_CHECKING:
     help="Seconds at which the overview shows the robots.  [default: start, end, and of few phases each end]",
 )  # fmt: skip
 @click.option(
-    "--figure", "names", multiple=True, metavar="NAME", help="motion, graph, decay or separation.  [default: all]"
-)
+    "--figure", "names", multiple=True, metavar="NAME",
+    help="motion, graph, decay or separation, or one panel of motion: floor or errors.  [default: the first four]",
+)  # fmt: skip
 @options.look
 def plot(
     run_folder: Path,

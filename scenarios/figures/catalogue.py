@@ -13,7 +13,7 @@ from scenarios.definition.experiment import Experiment
 from scenarios.errors import InputError, did_you_mean
 from scenarios.figures.decay import decay
 from scenarios.figures.graphs import graph
-from scenarios.figures.motion import motion, rows_at
+from scenarios.figures.motion import errors, floor, motion, rows_at
 from scenarios.figures.separation import separation
 from scenarios.figures.style import print_style, render
 from scenarios.measures.metrics import Metrics
@@ -23,8 +23,14 @@ from scenarios.storage.files import write_whole
 FIGURES = MappingProxyType({"graph": graph, "motion": motion, "decay": decay, "separation": separation})
 """Each figure by name: a function of the experiment, the trajectory and the metrics of a run."""
 
+PANELS = MappingProxyType({"floor": floor, "errors": errors})
+"""Parts of the overview by themselves, drawn where they are asked for."""
+
 OVERVIEW = "motion"
 """The figure that every run leaves in its folder."""
+
+TIMED = MappingProxyType({OVERVIEW: motion, "floor": floor})
+"""Those that show robots at times."""
 
 Draw = Callable[[Experiment, Trajectory, Metrics], Figure]
 
@@ -43,17 +49,18 @@ def names_for(experiment: Experiment) -> list[str]:
 def draw(
     experiment: Experiment, trajectory: Trajectory, metrics: Metrics, name: str, at: Sequence[float] = ()
 ) -> Figure:
-    """A figure by its name, in the style of print; the overview with the robots ``at`` times, seconds, if given.
+    """A figure by its name, in the style of print; on the floor are the robots ``at`` times, seconds, if given.
 
     Raises:
         InputError: there is none of that name, or a time is not one of the run.
     """
-    if name not in FIGURES:
-        raise InputError(f"figure {name[:40]!r}: {did_you_mean(name, FIGURES)}")
-    make: Draw = FIGURES[name]
+    drawn = {**FIGURES, **PANELS}
+    if name not in drawn:
+        raise InputError(f"figure {name[:40]!r}: {did_you_mean(name, drawn)}")
     with print_style():
-        if name == OVERVIEW:
-            return motion(experiment, trajectory, metrics, at)
+        if name in TIMED:
+            return TIMED[name](experiment, trajectory, metrics, at)
+        make: Draw = drawn[name]
         return make(experiment, trajectory, metrics)
 
 

@@ -35,7 +35,8 @@ from scenarios.simulation.trajectory import Trajectory
 LEFT, RIGHT = 0.44, 0.11
 SUM_HEIGHT, EACH_HEIGHT, GAP = 0.72, 0.85, 0.14
 TALLEST_FLOOR = 3.2
-"""Inches."""
+ABOVE_FLOOR, BELOW_FLOOR, ABOVE_ERRORS = 0.2, 0.34, 0.04
+"""Inches; room for legends, and for the names and numbers of an axis."""
 
 ROOM_FOR_TIMES = 0.04
 """Room above the highest robot, where snapshots are labelled with their times, as a share of the width."""
@@ -65,6 +66,35 @@ def motion(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, at:
     Raises:
         InputError: a time is not one of the run.
     """
+    bottom = _height(experiment)
+    rows, shown, size = _shown(experiment, trajectory, metrics, at)
+    figure = sheet(bottom + size[1] + ABOVE_FLOOR)
+    _floor(panel(figure, LEFT, bottom, *size), experiment, trajectory, rows, shown, bool(at))
+    _timelines(figure, experiment, trajectory, metrics)
+    return figure
+
+
+def floor(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, at: Sequence[float] = ()) -> Figure:
+    """The upper panel of :func:`motion` by itself: where the robots go."""
+    rows, shown, size = _shown(experiment, trajectory, metrics, at)
+    bottom = words_height(experiment) + BELOW_FLOOR
+    figure = sheet(bottom + size[1] + ABOVE_FLOOR)
+    _floor(panel(figure, LEFT, bottom, *size), experiment, trajectory, rows, shown, bool(at))
+    write_words(figure, experiment)
+    return figure
+
+
+def errors(experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> Figure:
+    """The lower panels of :func:`motion` by themselves: the angle errors over time."""
+    figure = sheet(_height(experiment) - BELOW_FLOOR + ABOVE_ERRORS)
+    _timelines(figure, experiment, trajectory, metrics)
+    return figure
+
+
+def _shown(
+    experiment: Experiment, trajectory: Trajectory, metrics: Metrics, at: Sequence[float]
+) -> tuple[list[int], Limits, tuple[float, float]]:
+    """The states that are drawn, the part of the floor that is shown, and its width and height, inches."""
     rows = rows_at(trajectory, at) if at else snapshot_rows(experiment, trajectory, metrics)
     shown = limits(experiment.arena, trajectory.poses)
     if at or len(experiment.phases) > 1 or experiment.phases[0].reference is not None:
@@ -73,17 +103,29 @@ def motion(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, at:
     height = width * (shown[3] - shown[2]) / (shown[1] - shown[0])
     if height > TALLEST_FLOOR:
         width, height = width * TALLEST_FLOOR / height, TALLEST_FLOOR
-    named = len(experiment.angles) <= MANY
-    words = words_height(experiment)
-    legend = words + (0.11 * -(-len(experiment.angles) // 4) + 0.05 if named else 0.14)
-    each = 0.34 + legend
-    sums = each + EACH_HEIGHT + GAP
-    named_phases = len(experiment.phases) > 1 and few_phases(experiment)
-    floor = sums + SUM_HEIGHT + (0.64 if named_phases else 0.52)
-    figure = sheet(floor + height + 0.2)
-    _floor(panel(figure, LEFT, floor, width, height), experiment, trajectory, rows, shown, bool(at))
+    return rows, shown, (width, height)
+
+
+def _each(experiment: Experiment) -> float:
+    """Inches below the panel of the errors, each by itself."""
+    angles = len(experiment.angles)
+    return words_height(experiment) + 0.34 + (0.11 * -(-angles // 4) + 0.05 if angles <= MANY else 0.14)
+
+
+def _named_phases(experiment: Experiment) -> bool:
+    return len(experiment.phases) > 1 and few_phases(experiment)
+
+
+def _height(experiment: Experiment) -> float:
+    """Inches below the floor where the errors are drawn under it."""
+    above = 0.64 if _named_phases(experiment) else 0.52
+    return _each(experiment) + EACH_HEIGHT + GAP + SUM_HEIGHT + above
+
+
+def _timelines(figure: Figure, experiment: Experiment, trajectory: Trajectory, metrics: Metrics) -> None:
+    words, named, each = words_height(experiment), len(experiment.angles) <= MANY, _each(experiment)
     lower = panel(figure, LEFT, each, COLUMN - LEFT - RIGHT, EACH_HEIGHT)
-    upper = panel(figure, LEFT, sums, COLUMN - LEFT - RIGHT, SUM_HEIGHT, sharex=lower)
+    upper = panel(figure, LEFT, each + EACH_HEIGHT + GAP, COLUMN - LEFT - RIGHT, SUM_HEIGHT, sharex=lower)
     draw_error_sum(upper, experiment, trajectory, metrics)
     draw_errors(lower, experiment, trajectory, metrics)
     mark_phases(upper, experiment, names=True)
@@ -92,7 +134,7 @@ def motion(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, at:
     mark_times(lower, experiment)
     write_words(figure, experiment)
     upper.tick_params(labelbottom=False)
-    above = 1.20 if named_phases else 1.04
+    above = 1.20 if _named_phases(experiment) else 1.04
     upper.legend(loc="lower center", bbox_to_anchor=(0.5, above), ncols=3)
     if named:
         handles, names = lower.get_legend_handles_labels()
@@ -106,7 +148,6 @@ def motion(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, at:
         text = f"{len(experiment.angles)} angles: {drawn}"
         figure.text(0.5, (words + 0.04) / figure.get_figheight(), text, fontsize=SMALL, ha="center", va="bottom")
     figure.align_ylabels([upper, lower])
-    return figure
 
 
 def _floor(

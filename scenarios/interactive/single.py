@@ -70,6 +70,8 @@ class Run:
     ) -> Figure:
         """A figure of ``formation plot`` for one column of a paper: motion, graph, decay or separation.
 
+        ``floor`` and ``errors`` are the panels of motion.
+
         Args:
             name: of the figure.
             at: times, seconds, at which motion shows the robots; start and end, and of few phases each end, if none.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,9 @@ from scenarios.figures.style import print_style
 from scenarios.measures.metrics import Metrics
 from scenarios.simulation.trajectory import Trajectory
 from scenarios.storage.files import replacing
+
+if TYPE_CHECKING:
+    from av.video.frame import VideoFrame
 
 HOLD = 1.5
 """Seconds for which the last frame stays."""
@@ -167,6 +170,16 @@ def _rgb(pixels: Pixels) -> Image.Image:
     return Image.fromarray(pixels[..., :3].copy())
 
 
+def _planes(pixels: Pixels) -> VideoFrame:
+    """A frame in the encoder's colours, rounded alike wherever in memory the pixels happen to lie."""
+    import av
+    from av.video.reformatter import Interpolation
+
+    frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(pixels), format="rgba")
+    exact = Interpolation.BILINEAR | Interpolation.ACCURATE_RND | Interpolation.BITEXACT
+    return frame.reformat(format="yuv420p", interpolation=exact, threads=1)
+
+
 def _mp4(film: Reel, path: Path, fps: float, on_frame: OnFrame) -> None:
     import av  # loads 70 MB of codecs
 
@@ -177,7 +190,7 @@ def _mp4(film: Reel, path: Path, fps: float, on_frame: OnFrame) -> None:
         stream.pix_fmt = "yuv420p"
         stream.codec_context.flags |= av.codec.context.Flags.bitexact
         for done, pixels in enumerate(film.frames(), start=1):
-            frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(pixels), format="rgba")
+            frame = _planes(pixels)
             for _ in range(1 + round(HOLD * fps) if done == total else 1):
                 frame.pts = None
                 container.mux(stream.encode(frame))

@@ -118,6 +118,18 @@ def test_a_maneuver_is_shown_at_its_start_and_at_the_end_of_each_phase(maneuver:
         np.testing.assert_allclose(segments, maneuver.trajectory.points[row][maneuver.experiment.graph.edges])
 
 
+@pytest.mark.parametrize("name", ["shape", "maneuver"])
+def test_the_panels_of_the_overview_are_drawn_by_themselves(name: str, request: pytest.FixtureRequest) -> None:
+    ran: Ran = request.getfixturevalue(name)
+    arguments = ran.experiment, ran.trajectory, ran.metrics
+    whole, floor, errors = (draw(*arguments, figure) for figure in ("motion", "floor", "errors"))
+    below = [axes.get_ylabel() for axes in whole.axes[1:]]
+    assert [axes.get_ylabel() for axes in floor.axes] == [whole.axes[0].get_ylabel()]
+    assert [axes.get_ylabel() for axes in errors.axes] == below
+    assert set(texts(floor)) | set(texts(errors)) == set(texts(whole))
+    assert floor.get_figheight() + errors.get_figheight() < whole.get_figheight() + 0.5
+
+
 def test_robots_are_shown_at_the_times_that_are_asked_for(shape: Ran) -> None:
     figure = draw(shape.experiment, shape.trajectory, shape.metrics, "motion", (30.0, 0.0, 7.02))
     times = ("0 s", "7 s", "30 s")
