@@ -64,7 +64,10 @@ def sweep(
             name: [""] for name in columns([variation.key for variation in study.variations]) if name not in TEXTS
         }
         return frames.read_csv(
-            swept.folder / place.ROWS, keep_default_na=False, na_values=missing, dtype=dict.fromkeys(TEXTS, str)
+            swept.folder / place.ROWS,
+            keep_default_na=False,
+            na_values=missing,
+            dtype=dict.fromkeys(TEXTS, str),
         )
 
 
