@@ -12,14 +12,13 @@ from scenarios.definition.experiment import Experiment, build
 from scenarios.errors import InputError
 from scenarios.measures.clearance import Clearance
 from scenarios.measures.metrics import measure
-from scenarios.measures.online.watch import Achieved, Watch, watchable
+from scenarios.measures.online.watch import Achieved, Watch
 from scenarios.measures.window import Window
-from scenarios.simulation.compiled.ability import unable
 from scenarios.simulation.compiled.runs import Runs
 from scenarios.simulation.loop import simulate
 from scenarios.simulation.trajectory import Trajectory
 from scenarios.studies.sweep.cause import ERROR, Ends, cause_of
-from scenarios.studies.sweep.study import Batch, together
+from scenarios.studies.sweep.study import Batch, is_watched, together
 
 RUN_COLUMNS = 3
 """The first columns of a row, which tell the run; varied keys come behind them."""
@@ -101,7 +100,7 @@ def run_batch(batch: Batch) -> list[Row]:
         experiment = build(batch.combination.file, batch.combination.duration)
     except Exception as error:
         return [_failed(batch, seed, error) for seed in batch.seeds]
-    if unable(experiment) is None and watchable(experiment):
+    if is_watched(experiment):
         step = together(experiment)
         parts = [batch.seeds[first : first + step] for first in range(0, len(batch.seeds), step)]
         return [row for seeds in parts for row in _watched(batch, experiment, seeds)]

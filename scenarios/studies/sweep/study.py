@@ -176,7 +176,7 @@ def open_study(
 def batch_size(experiment: Experiment) -> int:
     """Runs that are one task."""
     step = together(experiment)
-    if experiment.plant == SINGLE or not _watched(experiment):
+    if experiment.plant == SINGLE or not is_watched(experiment):
         return step
     passes = WATCHED_STATES // (step * experiment.n * count_periods(experiment))
     return min(MOST_WATCHED, step * max(1, passes))
@@ -186,12 +186,12 @@ def together(experiment: Experiment) -> int:
     """Runs that advance together: many on a plant without contact, as far as memory and cache go, one on pymunk."""
     if experiment.plant == SINGLE:
         return 1
-    if _watched(experiment):
+    if is_watched(experiment):
         return max(1, LANES // experiment.n) if side_by_side(experiment) else 1
     states = experiment.n * count_periods(experiment)
     return max(1, min(MOST_BATCHED, BATCH_STATES // states))
 
 
-def _watched(experiment: Experiment) -> bool:
+def is_watched(experiment: Experiment) -> bool:
     """Whether its runs are measured on their way."""
     return unable(experiment) is None and watchable(experiment)
