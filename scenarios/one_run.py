@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,8 +14,7 @@ from scenarios.errors import plain
 from scenarios.measures.metrics import Metrics, measure
 from scenarios.measures.predictions.remarks import remarks
 from scenarios.measures.result import result
-from scenarios.recording import file, viewer
-from scenarios.recording.aside import Encoder
+from scenarios.recording import aside, viewer
 from scenarios.report.result import print_result
 from scenarios.simulation.compiling import compile_for
 from scenarios.simulation.loop import simulate
@@ -56,14 +54,14 @@ def run_to_folder(
     for remark in remarks(experiment, seed):
         console.print(escape(remark), style="bold")
     folder = out or run_folder.default_path(experiment.file.name, experiment.plant, seed)
-    with run_folder.writing(folder) as scratch, Encoder() if recorded else nullcontext() as encoder:
+    with run_folder.writing(folder) as scratch:
         view = _open_view(experiment, seed, live, console)
         compile_for(experiment)
         with progress_bar(console, experiment.file.name) as advance:
             trajectory = simulate(experiment, seed, advance, view)
         metrics = measure(experiment, trajectory)
         summary = result(experiment, seed, trajectory, metrics)
-        _fill(scratch, experiment, trajectory, metrics, summary, encoder, console)
+        _fill(scratch, experiment, trajectory, metrics, summary, recorded, console)
     _close_view(view, live, summary, console)
     print_result(console, summary)
     console.print(f"run folder: {escape(plain(str(folder)))}")
@@ -100,8 +98,8 @@ def save(
     Raises:
         InputError: the folder cannot be written.
     """
-    with run_folder.writing(folder) as scratch, Encoder() as encoder:
-        _fill(scratch, experiment, trajectory, metrics, summary, encoder, console)
+    with run_folder.writing(folder) as scratch:
+        _fill(scratch, experiment, trajectory, metrics, summary, True, console)
 
 
 def _fill(
@@ -110,12 +108,19 @@ def _fill(
     trajectory: Trajectory,
     metrics: Metrics,
     summary: dict[str, Any],
-    encoder: Encoder | None,
+    recorded: bool,
     console: Console,
 ) -> None:
     """All files of a run folder."""
+
+    def encoded() -> bytes:
+        from scenarios.recording.encode import encode  # loads rerun
+
+        return encode(experiment, trajectory, metrics, summary)
+
     run_folder.write(scratch, experiment, trajectory, metrics.angle_errors, summary)
-    with _recording(encoder, scratch, console):
+    path = scratch / run_folder.RECORDING
+    with aside.recording(path, encoded, console) if recorded else nullcontext():
         _draw_overview(experiment, trajectory, metrics, scratch)
 
 
@@ -123,20 +128,6 @@ def _draw_overview(experiment: Experiment, trajectory: Trajectory, metrics: Metr
     from scenarios.figures import OVERVIEW, plot  # matplotlib takes as long to load as the run takes
 
     plot(experiment, trajectory, metrics, folder, [OVERVIEW], ["png"])  # `formation plot` draws the rest, and for print
-
-
-@contextmanager
-def _recording(encoder: Encoder | None, folder: Path, console: Console) -> Iterator[None]:
-    """Encodes the run in ``folder`` beside what the block does. A run is whole without: replay rebuilds a recording."""
-    if encoder is None:
-        yield
-        return
-    encoder.begin(folder)
-    yield
-    try:
-        file.write(folder / run_folder.RECORDING, encoder.recording())
-    except OSError as error:
-        console.print(f"recording: cannot be written: {error.strerror}; replay will rebuild it")
 
 
 def _open_view(experiment: Experiment, seed: int, live: Live | None, console: Console) -> LiveView | None:

@@ -127,7 +127,7 @@ class Run:
         from scenarios.interactive.viewer import widget
         from scenarios.recording.encode import encode  # loads rerun
 
-        recording = encode(self.experiment, self.seed, self.trajectory, self.metrics, self.result)
+        recording = encode(self.experiment, self.trajectory, self.metrics, self.result)
         return widget(recording, width, height)
 
     def save(self, folder: str | Path) -> Path:

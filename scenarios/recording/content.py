@@ -8,12 +8,8 @@ from scenarios.recording.encode import encode_run
 from scenarios.storage import run_folder, script_folder
 
 
-def recording_of(folder: Path, under_way: bool = False) -> bytes:
+def recording_of(folder: Path) -> bytes:
     """The content of the ``.rrd`` file of the run in ``folder``, which has all other files.
-
-    Args:
-        folder: of the run.
-        under_way: whether it may be the scratch of a run that is not in its place yet.
 
     Raises:
         InputError: it does not hold a run.
@@ -22,4 +18,4 @@ def recording_of(folder: Path, under_way: bool = False) -> bytes:
         from scenarios.recording.script import encode_script
 
         return encode_script(script_folder.read(folder))
-    return encode_run(run_folder.read(folder, under_way))
+    return encode_run(run_folder.read(folder))

@@ -30,10 +30,9 @@ class Side(NamedTuple):
 SIDES = (Side("A", style.MEASURED, "blue"), Side("B", style.SECOND, "gold"))
 
 
-def encode(
-    experiment: Experiment, seed: int, trajectory: Trajectory, metrics: Metrics, result: dict[str, Any]
-) -> bytes:
+def encode(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, result: dict[str, Any]) -> bytes:
     """The recording of one run, as the content of an ``.rrd`` file."""
+    seed = result["seed"]
     layout = blueprint.single(experiment, trajectory.points)
     with _in_memory(identity(experiment, seed), title(experiment, seed), layout) as (stream, memory):
         _send(Recorder(stream), experiment, trajectory, metrics, result)
@@ -43,7 +42,7 @@ def encode(
 def encode_run(run: Run) -> bytes:
     """The recording of a run that was read back, as the content of an ``.rrd`` file."""
     metrics = measure(run.experiment, run.trajectory)
-    return encode(run.experiment, run.result["seed"], run.trajectory, metrics, run.result)
+    return encode(run.experiment, run.trajectory, metrics, run.result)
 
 
 def encode_pair(runs: Sequence[Run]) -> bytes:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,9 +21,7 @@ from robots.rps.simulation import WHEELED
 from robots.worlds import MEASURED_PLANTS
 from scenarios.errors import InputError, did_you_mean
 from scenarios.measures.script_result import chosen, script_result
-from scenarios.recording import file as recording_file
-from scenarios.recording import viewer
-from scenarios.recording.aside import Encoder
+from scenarios.recording import aside, viewer
 from scenarios.report.script_printout import print_script, print_script_result
 from scenarios.simulation.script.execute import Ending, execute
 from scenarios.simulation.script.frames import FINAL_DOTS_PER_INCH, Camera, all_drawn, png
@@ -89,7 +87,7 @@ def run_script(
     folder = (out or script_folder.default_path(file.name, settings.plant, settings.seed)).absolute()
     if not settings.on_screen:
         take_the_screen_away()
-    with run_folder.writing(folder) as scratch, Encoder() if settings.recorded else nullcontext() as encoder:
+    with run_folder.writing(folder) as scratch:
         print_script(console, file)
         camera, view = Camera(), _open_view(settings, file, console)
         with open_ended(console, file.name) as say, _folder_kept():
@@ -103,11 +101,8 @@ def run_script(
         result = script_result(file, arguments, settings.seed, settings.start, settings.plant, ending, robots)
         result["robot_model"] = "measured" if settings.measured else "nominal"
         script_folder.write(scratch, file.source, robots.record(), camera.frames(robots), result)
-        if encoder is not None:
-            encoder.begin(scratch)
-        _draw(scratch, robots)
-        if encoder is not None:
-            _record(scratch / run_folder.RECORDING, encoder, console)
+        with _recording(scratch, console) if settings.recorded else nullcontext():
+            _draw(scratch, robots)
     if view is not None and not view.finish():
         console.print("live: the viewer went away; the run folder has everything")
     print_script_result(console, robots.record(), result)
@@ -179,12 +174,15 @@ def _draw(folder: Path, robots: Robotarium) -> None:
     draw_overview(script_folder.read(folder), folder, ["png"])
 
 
-def _record(path: Path, encoder: Encoder, console: Console) -> None:
-    """Write the recording. A run is whole without it: replay rebuilds it."""
-    try:
-        recording_file.write(path, encoder.recording())
-    except OSError as error:
-        console.print(f"recording: cannot be written: {error.strerror}; replay will rebuild it")
+def _recording(folder: Path, console: Console) -> AbstractContextManager[None]:
+    """Records the run in ``folder``, which has all other files, beside what the block does."""
+
+    def encoded() -> bytes:
+        from scenarios.recording.script import encode_script  # loads rerun
+
+        return encode_script(script_folder.read(folder))
+
+    return aside.recording(folder / run_folder.RECORDING, encoded, console)
 
 
 def _open_view(settings: Settings, file: ScriptFile, console: Console) -> ScriptView | None:

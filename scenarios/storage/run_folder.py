@@ -139,12 +139,8 @@ def _looks_like_run(folder: Path) -> bool:
     return os.path.isfile(folder / RESULT) and os.path.isfile(folder / TRAJECTORY)  # of any path that can be given
 
 
-def read(folder: Path, under_way: bool = False) -> Run:
+def read(folder: Path) -> Run:
     """Read a run folder back, and check all that is read.
-
-    Args:
-        folder: of the run.
-        under_way: whether it may be the scratch of a run that is not in its place yet.
 
     Raises:
         InputError: it is not a run folder, or one of its files is missing, damaged, edited or of another run.
@@ -157,7 +153,7 @@ def read(folder: Path, under_way: bool = False) -> Run:
         raise InputError(f"{folder}: no such run folder")
     if not _looks_like_run(folder):
         raise InputError(f"{folder}: not a run folder, it holds no {RESULT} and {TRAJECTORY}")
-    if not under_way and scratch.is_scratch(folder):
+    if scratch.is_scratch(folder):
         raise InputError(f"{folder}: not a finished run, its process still works or was killed; make the run again")
     file, result = read_recipe(folder)
     experiment = build(file, asked_duration(file.scenario, result), to_run=False)

@@ -28,7 +28,7 @@ PAIRS = 9
 
 def record(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, folder: Path) -> None:
     summary = result(experiment, 0, trajectory, metrics)
-    write(folder / "recording.rrd", encode(experiment, 0, trajectory, metrics, summary))
+    write(folder / "recording.rrd", encode(experiment, trajectory, metrics, summary))
 
 
 def crowd(recorded: Recorded) -> tuple[Experiment, Trajectory]:

@@ -12,16 +12,14 @@ import sys
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import pytest
 
 from robots import PLANTS
-from scenarios import one_run, open_experiment
+from scenarios import open_experiment
 from scenarios.cli import BAD_INPUT, DONE, MISSED
 from scenarios.definition.load import LIBRARY, library
-from scenarios.recording import aside
-from scenarios.recording.content import recording_of
 
 
 class Answer(NamedTuple):
@@ -76,28 +74,9 @@ def test_show_prints_assumptions_rates_and_end_of_every_scenario(cli: Cli, name:
         assert "late rate: of the law alone" in answer.out
 
 
-class Here(aside.Encoder):
-    """Encodes in this process, which loads rerun once, what another one does beside a run, and loads it each time."""
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        pass
-
-    def begin(self, folder: Path) -> None:
-        self._content = recording_of(folder, under_way=True)
-
-    def recording(self) -> bytes:
-        return self._content
-
-
 @pytest.mark.parametrize("plant", PLANTS)
 @pytest.mark.parametrize("name", library())
-def test_every_scenario_runs_for_a_second_on_every_plant(
-    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, plant: str
-) -> None:
-    monkeypatch.setattr(one_run, "Encoder", Here)
+def test_every_scenario_runs_for_a_second_on_every_plant(cli: Cli, tmp_path: Path, name: str, plant: str) -> None:
     recorded = () if plant == "pymunk" else ("--no-recording",)
     answer = cli("run", name, "--plant", plant, "--duration", "1", "--seed", "3", *recorded)
     assert answer.code in (DONE, MISSED), answer

@@ -19,7 +19,6 @@ from hypothesis import strategies as st
 from rerun.chunk import RrdReader
 from rich.console import Console
 
-import scenarios.one_run
 from formation import agents as numbering
 from robots.obstacles import Obstacle
 from robots.testbed import COLLISION_DISTANCE
@@ -32,7 +31,6 @@ from scenarios.measures.safety_result import NOTICEABLE
 from scenarios.measures.tracking import predicted_ends
 from scenarios.one_run import run_to_folder
 from scenarios.recording import file, viewer
-from scenarios.recording.aside import Encoder
 from scenarios.recording.encode import encode, encode_pair
 from scenarios.recording.file import damage, write
 from scenarios.recording.piece import rows, whole
@@ -91,7 +89,7 @@ def of_states(columns: Columns, entity: str, t: np.ndarray) -> np.ndarray:
 def encoded(experiment: Experiment, path: Path, seed: int = 0) -> tuple[Path, object, object]:
     trajectory = simulate(experiment, seed)
     metrics = measure(experiment, trajectory)
-    write(path, encode(experiment, seed, trajectory, metrics, result(experiment, seed, trajectory, metrics)))
+    write(path, encode(experiment, trajectory, metrics, result(experiment, seed, trajectory, metrics)))
     return path, trajectory, metrics
 
 
@@ -319,7 +317,7 @@ def test_a_crowd_has_dots_and_no_arcs_ranges_or_arrows(recorded: Callable[..., A
     trajectory = recorded(np.array([0.0, 0.5, 1.0]), poses, points)
     metrics = measure(experiment, trajectory)
     path = tmp_path / "run.rrd"
-    write(path, encode(experiment, 0, trajectory, metrics, result(experiment, 0, trajectory, metrics)))
+    write(path, encode(experiment, trajectory, metrics, result(experiment, 0, trajectory, metrics)))
     found = read(path)
     assert experiment.n > style.CROWD
     for absent in (angles.MEASURED, angles.WORDS, f"{scene.ROBOTS}/3/sensing", f"{scene.ROBOTS}/3/velocity"):
@@ -379,7 +377,7 @@ def test_a_run_that_diverges_is_recorded_up_to_its_last_finite_state(shape: Expe
         states[-1] = np.nan
     metrics = measure(shape, trajectory)
     path = tmp_path / "diverged.rrd"
-    write(path, encode(shape, 0, trajectory, metrics, result(shape, 0, trajectory, metrics)))
+    write(path, encode(shape, trajectory, metrics, result(shape, 0, trajectory, metrics)))
     assert damage(path) is None
     assert len(read(path)[f"/{scene.ROBOTS}/1"]["translation"][1]) == 99
 
@@ -487,37 +485,85 @@ def test_a_full_disk_costs_the_recording_and_nothing_else(tmp_path: Path, monkey
     assert run_folder.RECORDING not in names
 
 
-@pytest.mark.parametrize("moment", ["measure", "_draw_overview"])
-def test_a_killed_encoder_costs_the_recording_and_nothing_else(
-    moment: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    started: list[Encoder] = []
-    enter, proceed = Encoder.__enter__, getattr(scenarios.one_run, moment)
+RUN_WITH = """
+import sys
+from pathlib import Path
+from rich.console import Console
+import scenarios.one_run
+from scenarios.definition.experiment import open_experiment
+{}
+scenarios.one_run.run_to_folder(open_experiment("shape", (), 1.0), 0, Path(sys.argv[1]), Console(width=400))
+"""
+"""A run in a process of its own, which alone may have a child: this one has threads, and may have loaded rerun."""
 
-    def remembered(encoder: Encoder) -> Encoder:
-        started.append(enter(encoder))
-        return encoder
+KILL = """
+import os, signal
+draw, enter, children = scenarios.one_run._draw_overview, scenarios.one_run.aside.Encoder.__enter__, []
+def remembered(encoder):
+    enter(encoder)
+    children.append(encoder._child)
+    return encoder
+def kill(*arguments):
+    os.kill(children[0], signal.SIGKILL)
+    draw(*arguments)
+scenarios.one_run.aside.Encoder.__enter__, scenarios.one_run._draw_overview = remembered, kill
+"""
 
-    def kill(*arguments: Any) -> Any:
-        started[0]._process.kill()
-        started[0]._process.wait()
-        return proceed(*arguments)
 
-    monkeypatch.setattr(Encoder, "__enter__", remembered)
-    monkeypatch.setattr(scenarios.one_run, moment, kill)
-    console = Console(record=True, file=io.StringIO(), width=400)
-    run_to_folder(open_experiment("shape", (), 1.0), 0, tmp_path / "run", console)
-    assert "recording: cannot be written: the process that encodes it ended with code -9" in console.export_text()
+def run_with(changes: str, folder: Path) -> str:
+    code = [sys.executable, "-c", RUN_WITH.format(changes), str(folder)]
+    done = subprocess.run(code, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="encodes in a child on Linux only")
+def test_a_killed_encoder_costs_the_recording_and_nothing_else(tmp_path: Path) -> None:
+    told = run_with(KILL, tmp_path / "run")
+    assert "recording: cannot be written: the process that encodes it ended with code -9" in told
     assert damage(recording_of(tmp_path / "run", tmp_path, Console(quiet=True))) is None
 
 
+def test_a_recording_that_cannot_be_made_costs_nothing_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*arguments: Any) -> bytes:
+        raise ValueError("no such component")
+
+    monkeypatch.setattr("scenarios.recording.encode.encode", broken)  # loaded by now, so that this process encodes
+    console = Console(record=True, file=io.StringIO(), width=400)
+    run_to_folder(open_experiment("shape", (), 1.0), 0, tmp_path / "run", console)
+    assert "recording: cannot be written: ValueError: no such component; replay will" in console.export_text()
+    monkeypatch.undo()
+    assert damage(recording_of(tmp_path / "run", tmp_path, Console(quiet=True))) is None
+
+
+def test_a_child_encodes_what_the_process_itself_would(tmp_path: Path) -> None:
+    assert "recording" not in run_with("", tmp_path / "child")
+    assert "recording" not in run_with("import rerun", tmp_path / "itself")
+    sizes = [(tmp_path / name / run_folder.RECORDING).stat().st_size for name in ("child", "itself")]
+    assert sizes[0] == pytest.approx(sizes[1], rel=0.01)  # the time of writing is in it
+    assert damage(tmp_path / "child" / run_folder.RECORDING) is None
+
+
 def test_an_encoder_ends_with_the_run_that_started_it() -> None:
-    with pytest.raises(KeyboardInterrupt), Encoder() as encoder:
+    code = """
+import os, sys, time
+from scenarios.recording.aside import Encoder
+try:
+    with Encoder(lambda: time.sleep(60)) as encoder:
+        child = encoder._child
         raise KeyboardInterrupt
-    assert encoder._process.returncode is not None
-    code = "import os, signal; from scenarios.recording.aside import Encoder; Encoder().__enter__(); os._exit(9)"
-    orphaned = subprocess.run([sys.executable, "-c", code], capture_output=True, timeout=60)
-    assert orphaned.returncode == 9  # and returned: nobody holds its output open
+except KeyboardInterrupt:
+    pass
+try:
+    os.kill(child, 0)
+    sys.exit("it lives")
+except ProcessLookupError:
+    pass
+Encoder(lambda: time.sleep(1)).__enter__()
+os._exit(9)
+"""
+    orphaned = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert (orphaned.returncode, orphaned.stderr) == (9, "")  # and returned: nobody holds its output open
 
 
 def test_a_folder_of_the_users_named_like_a_package_is_not_imported(
