@@ -8,22 +8,31 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numba
 import pytest
 
-from robots.compiled import at_hand, compiled, ingredients
+from robots.compiled import at_hand, compiled
+from robots.compiled.functions import ingredients
 from robots.safety.step import filter_step
 from scenarios.definition.experiment import open_experiment
 from scenarios.simulation import compiling
 
 NOWHERE = """
-import warnings
+import os, sys, tempfile, warnings
 from numba.core import caching
 caching.CacheImpl._locator_classes = []  # as numba finds them: nothing can be written
 warnings.simplefilter("error")
-from robots.safety import solver, step
-from robots.compiled import at_hand
-print(at_hand(step.filter_step), solver.within_wheels(0.3, 0.0, 0.0, 0.0, 0.2, 2.2))
+from robots.compiled import at_hand, kept
+def full(*arguments, **named): raise OSError(28, "No space left on device")
+tempfile.NamedTemporaryFile = full
+from robots.safety import solver
+from robots.worlds import bodies, chipmunk
+import pymunk
+space = pymunk.Space()
+space.add(pymunk.Body(1.0, 1.0))
+seen, alive = chipmunk.bodies_of(space, space.bodies)
+print(at_hand(solver.project), solver.within_wheels(0.3, 0.0, 0.0, 0.0, 0.2, 2.2))
+chipmunk.observe(seen)
+print(seen.state[0].tolist())
 """
 
 
@@ -36,7 +45,7 @@ def test_the_path_of_the_tests_holds_the_environments_programs_and_the_shells_al
 
 def test_where_no_machine_code_can_be_kept_the_filter_runs_without_a_word() -> None:
     done = subprocess.run([sys.executable, "-c", NOWHERE], capture_output=True, text=True)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "False 0.0\n", "")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "False 0.0\n[0.0, 0.0, 0.0, 0.0, 0.0, 0.0]\n", "")
 
 
 def test_machine_code_is_at_hand_once_a_function_was_called() -> None:
@@ -47,7 +56,7 @@ def test_machine_code_is_at_hand_once_a_function_was_called() -> None:
     assert function(2.0) == 4.0
     assert at_hand(function)
     assert at_hand(twice)  # not compiled at all
-    assert not at_hand(numba.njit(lambda x: x))
+    assert not at_hand(compiled(lambda x: x))
 
 
 @pytest.mark.parametrize("ready", [True, False])

@@ -30,17 +30,26 @@ PACKAGES = [name for name, path in MODULES.items() if path.name == "__init__.py"
 
 ALLOWED = {
     "formation": {"formation", "numpy", "scipy", "numba"},
-    "robots": {"robots", "numpy", "scipy", "pymunk", "numba", "daqp", "matplotlib"},  # the last for what scripts draw
+    "robots": {
+        "robots",
+        "numpy",
+        "scipy",
+        "pymunk",
+        "numba",
+        "llvmlite",
+        "daqp",
+        "matplotlib",
+    },  # the last for what scripts draw
 }
 
 HEAVY_HOMES = {
     "matplotlib": ("scenarios.figures", "scenarios.simulation.script"),
     "PIL": ("scenarios.figures",),
     "rerun": ("scenarios.recording",),
-    "numba": ("robots", "scenarios.simulation", "formation.design.kernel"),
+    "numba": ("formation.design.kernel",),
     "pymunk": ("robots.worlds",),
     "daqp": ("robots.safety", "robots.rps"),
-    **dict.fromkeys(("pyarrow", "scipy", "pandas", "dask", "distributed"), ()),
+    **dict.fromkeys(("pyarrow", "scipy", "pandas", "dask", "distributed", "llvmlite"), ()),
 }
 """Packages that take their time to load, and the rooms whose files may load them when they are imported themselves."""
 

@@ -15,7 +15,7 @@ from robots.safety.barrier import FilterSettings
 from robots.safety.crowd import LARGE
 from robots.safety.protocol import BLOCKERS, Noise, Real
 from robots.safety.rows import Things, constants, things
-from robots.safety.step import filter_step
+from robots.safety.step import filter_step, room
 from robots.senses.noise import silence
 from robots.worlds import lanes
 from robots.worlds.lanes import COS, GX, NOW, PX, SEEN_X, UX, VX, Senses
@@ -54,16 +54,16 @@ class DecentralisedFilter:
         n, runs = shape[-1], int(np.prod(shape[:-1]))
         self._shape = shape
         self._constants = constants(settings, drive, nid, n)
-        self._things = things(arena)
         together = 1 if n > LARGE else runs  # a large crowd is searched run by run
         sizes = [min(together, runs - first) for first in range(0, runs, max(together, 1))]
         self._states = [lanes.at_rest(n, size) for size in sizes]
         self._blockers = [np.full((n, size, BLOCKERS), -1, dtype=np.int32) for size in sizes]
+        self._among(things(arena))
         self._tell()
 
     def avoid(self, obstacles: Sequence[Obstacle]) -> None:
         """See :class:`robots.safety.SafetyFilter`."""
-        self._things = Things(self._things.walls, *pack(obstacles))
+        self._among(Things(self._things.walls, *pack(obstacles)))
 
     def filter(
         self,
@@ -82,17 +82,22 @@ class DecentralisedFilter:
         n = self._shape[-1]
         given = {PX: points, COS: headings, GX: feedback, VX: common} | ({} if seen is None else {SEEN_X: seen})
         u, first = np.empty((int(np.prod(self._shape[:-1])), n, 2)), 0
-        for state, blockers in zip(self._states, self._blockers, strict=True):
+        for state, blockers, work in zip(self._states, self._blockers, self._rooms, strict=True):
             part = slice(first, first + state.shape[2])
             for field, vectors in given.items():
                 state[field : field + 2] = vectors.reshape(-1, n, 2)[part].T
             heard = silence(state.shape[2]) if noise is None else noise._replace(keys=noise.keys.reshape(-1)[part])
             senses = NOW if seen is None else _LATE
-            filter_step(state, blockers, float(period), senses, self._constants, self._things, heard)
+            filter_step(state, blockers, float(period), senses, self._constants, self._things, heard, work)
             u[part] = state[UX : UX + 2].T
             first = part.stop
         self._tell()
         return u.reshape(points.shape)
+
+    def _among(self, around: Things) -> None:
+        """Take what stands still around the robots."""
+        self._things = around
+        self._rooms = [room(self._shape[-1], state.shape[2], around) for state in self._states]
 
     def _tell(self) -> None:
         """Say what the last period has left in the states."""

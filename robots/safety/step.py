@@ -8,11 +8,12 @@ and only the robots with a broken row are solved, one by one.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.compiled import compiled, inlined
+from robots.compiled import compiled, inlined, program
 from robots.safety.crowd import LARGE, around, fill_grid, in_rows, others
 from robots.safety.protocol import BLOCKERS
 from robots.safety.rows import CLOSE, LEVEL, MOST, NORMAL_X, NORMAL_Y, ROW, Constants, Things, rows_of
@@ -38,9 +39,59 @@ Index = NDArray[np.int64]
 Code = NDArray[np.int32]
 
 
-@compiled
+class Room(NamedTuple):
+    """Where the filter works; what it holds between two periods means nothing.
+
+    Attributes:
+        cells, order, first: (n, 3), (n,), (2^k + 1,) the grid of a crowd.
+        found: (n,) who is near a robot.
+        lanes: (m, ROW, L) a robot's rows in all runs.
+        source: (m,) what they belong to.
+        problem, work: (WHEEL_ROWS + m, 3) the rows of one run.
+        wish_x, wish_y, broken: (L,) what a robot wishes in all runs, and whether that breaks a row.
+    """
+
+    cells: Index
+    order: Index
+    first: Index
+    found: Index
+    lanes: Real
+    source: Index
+    problem: Real
+    work: Real
+    wish_x: Real
+    wish_y: Real
+    broken: Real
+
+
+def room(n: int, runs: int, things: Things) -> Room:
+    """Room for n robots in so many runs among things."""
+    most, buckets = n + len(things.walls) + len(things.radii), 2 ** (2 * n - 1).bit_length()
+    return Room(
+        cells=np.empty((n, 3), np.int64),
+        order=np.empty(n, np.int64),
+        first=np.empty(buckets + 1, np.int64),
+        found=np.empty(n, np.int64),
+        lanes=np.empty((most, ROW, runs)),
+        source=np.empty(most, np.int64),
+        problem=np.empty((WHEEL_ROWS + most, 3)),
+        work=np.empty((WHEEL_ROWS + most, 3)),
+        wish_x=np.empty(runs),
+        wish_y=np.empty(runs),
+        broken=np.empty(runs),
+    )
+
+
+@program
 def filter_step(
-    state: Real, blockers: Code, period: float, senses: Senses, constants: Constants, things: Things, noise: Noise
+    state: Real,
+    blockers: Code,
+    period: float,
+    senses: Senses,
+    constants: Constants,
+    things: Things,
+    noise: Noise,
+    room: Room,
 ) -> None:
     """Set the commands UX, UY of all robots, and what the filter says of them.
 
@@ -50,20 +101,16 @@ def filter_step(
             obstacles; -1 where there is none.
         period: seconds.
         senses: which fields of the state are sensed.
+        room: for so many robots, runs and things.
     """
     n, runs = state.shape[1], state.shape[2]
     large = n > LARGE and runs == 1
-    size = 1
-    while size < 2 * n:
-        size *= 2
-    cells, order, first = np.empty((n, 3), np.int64), np.empty(n, np.int64), np.empty(size + 1, np.int64)
+    cells, order, first, found = room.cells, room.order, room.first, room.found
+    lanes, problem, work, source = room.lanes, room.problem, room.work, room.source
+    wish_x, wish_y, broken = room.wish_x, room.wish_y, room.broken
     if large:
         there_x, there_y = state[senses.others, :, 0], state[senses.others + 1, :, 0]
         fill_grid(there_x, there_y, constants.sensing_range, cells, first, order)
-    most = n + len(things.walls) + len(things.radii)
-    lanes, problem = np.empty((most, ROW, runs)), np.empty((WHEEL_ROWS + most, 3))
-    work, source, found = np.empty_like(problem), np.empty(most, np.int64), np.empty(n, np.int64)
-    wish_x, wish_y, broken = np.empty(runs), np.empty(runs), np.empty(runs)
     for i in range(n):
         speed, weight = constants.speed_limits[i], constants.turn_weights[i]
         _bound(state[GX, i], state[GY, i])

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.compiled import compiled
+from robots.compiled import compiled, program
 from robots.worlds.chipmunk import BODY_ANGLE, BODY_VX, BODY_X, BODY_Y, Bodies, drive, no_bodies
 from robots.worlds.lanes import (
     CONTACT,
@@ -54,7 +54,7 @@ def no_chassis() -> Chassis:
     return Chassis(no_bodies(), np.zeros(0), 0, np.zeros((0, 2)))
 
 
-@compiled
+@program
 def move(chassis: Chassis, period: float) -> None:
     """Let the robots move for a period, seconds, while their wheels command :attr:`Chassis.twist`.
 

@@ -10,13 +10,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numba
 import numpy as np
-from numba import types
-from numba.extending import intrinsic
 from numpy.typing import NDArray
 
-from robots.compiled import compiled
+from robots.compiled import compiled, intrinsic, program
+from robots.compiled.memory import ARRAY, AT
 from robots.worlds.protocol import NOTHING
 
 if TYPE_CHECKING:
@@ -24,8 +22,6 @@ if TYPE_CHECKING:
 
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
-
-_array: Any = numba.carray  # type: ignore[attr-defined]
 
 FUNCTIONS = (
     "cpSpaceStep",
@@ -151,20 +147,20 @@ def _library() -> tuple[Any, Any]:
     return ffi, lib
 
 
-@compiled
+@program
 def observe(bodies: Bodies) -> None:
     """Read the state of all bodies, and whom those that are watched touch."""
     bodies.read_count[0] = bodies.touch_count[0] = 0
     _visit(bodies.each_body, bodies.space, bodies.read, bodies.reading)
     _visit(bodies.each_touch, bodies.space, bodies.touch, bodies.touching)
     columns, read = bodies.state.shape[1], bodies.read_count[0]
-    numbers = _array(_pointer(bodies.read_place[0]), read, np.float64)
+    numbers = ARRAY(AT(bodies.read_place[0]), read, np.float64)
     for place in range(read):
         bodies.state[place // columns, place % columns] = numbers[place]
     touched, n = bodies.touched, len(bodies.touched)
     touched[:] = NOTHING
     found = bodies.touch_count[0]
-    ids = _array(_pointer(bodies.touch_place[0]), found, np.int64)
+    ids = ARRAY(AT(bodies.touch_place[0]), found, np.int64)
     for place in range(0, found, 2):
         one, other = _row(bodies, ids[place]), _row(bodies, ids[place + 1])
         if one < n and (touched[one] == NOTHING or other < touched[one]):
@@ -199,6 +195,8 @@ def _row(bodies: Bodies, number: int) -> int:
 
 def _call(context: Any, builder: Any, signature: Any, values: Sequence[Any]) -> Any:
     """Call the C function at the address ``values[0]`` with the rest of the values."""
+    from numba import types
+
     kind = types.ExternalFunctionPointer(types.void(*signature.args[1:]), int)
     function = builder.inttoptr(values[0], context.get_value_type(kind))
     context.call_function_pointer(builder, function, values[1:])
@@ -206,20 +204,16 @@ def _call(context: Any, builder: Any, signature: Any, values: Sequence[Any]) -> 
 
 
 def _to_visit(typing: Any, each: Any, space: Any, function: Any, data: Any) -> Any:
+    from numba import types
+
     return types.void(types.intp, types.intp, types.intp, types.intp), _call
 
 
 def _to_step(typing: Any, step: Any, space: Any, dt: Any) -> Any:
+    from numba import types
+
     return types.void(types.intp, types.intp, types.float64), _call
 
 
-def _to_pointer(typing: Any, address: Any) -> Any:
-    def make(context: Any, builder: Any, signature: Any, values: Sequence[Any]) -> Any:
-        return builder.inttoptr(values[0], context.get_value_type(types.voidptr))
-
-    return types.voidptr(types.intp), make
-
-
-_visit: Any = intrinsic(_to_visit)  # each(space, function, data), all of them addresses
-_step: Any = intrinsic(_to_step)  # step(space, dt)
-_pointer: Any = intrinsic(_to_pointer)
+_visit = intrinsic(_to_visit)  # each(space, function, data), all of them addresses
+_step = intrinsic(_to_step)  # step(space, dt)

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from formation.laws import angle_loop
 from formation.laws.angle_loop import Gains
-from robots.compiled import compiled, inlined
+from robots.compiled import compiled, inlined, program
 from robots.safety.rows import Constants, Things
-from robots.safety.step import Code, filter_step
+from robots.safety.step import Code, Room, filter_step
 from robots.senses.measure import measure
 from robots.senses.noise import Noise
 from robots.worlds.bodies import Chassis, shove
@@ -41,19 +41,21 @@ class Guard(NamedTuple):
     present: bool
     constants: Constants
     things: Things
+    room: Room
 
 
 class Law(NamedTuple):
-    """The law and the edges (m, 2) along which it measures, rows (observer, observed)."""
+    """The law, its edges (m, 2), rows (observer, observed), and room (2, m, L) for what is measured along them."""
 
     gains: Gains
     edges: Index
+    seen: Real
 
 
 _feedback = compiled(angle_loop.feedback)
 
 
-@compiled
+@program
 def advance(
     state: Real,
     rows: Real,
@@ -73,13 +75,12 @@ def advance(
         noise: with keys (K, L), of each period.
         blockers: (K, n, L, 3) out, see :func:`robots.safety.step.filter_step`; or (1, n, L, 3) for the last period's.
     """
-    e = np.empty((2, len(law.edges), state.shape[2]))
     for k in range(len(rows)):
         heard = Noise(noise.keys[k], noise.position, noise.bearing)
-        _obey(state, law, heard, commands, e)
+        _obey(state, law, heard, commands)
         if guard.present:
             after = blockers[k % len(blockers)]
-            filter_step(state, after, commands.period, NOW, guard.constants, guard.things, heard)
+            filter_step(state, after, commands.period, NOW, guard.constants, guard.things, heard, guard.room)
         else:
             _copy(state, WX, state, UX, 2)
         if chassis.substeps > 0:
@@ -89,17 +90,20 @@ def advance(
         _copy(state, 0, rows[k], 0, rows.shape[1])
 
 
-@compiled
-def integrate(state: Real, rows: Real, law: Law, noise: Noise, commands: Commands) -> None:
-    """The same of points that move as they will, dp/dt = u, by the classical Runge-Kutta method of order four."""
+@program
+def integrate(state: Real, rows: Real, law: Law, noise: Noise, commands: Commands, room: Real) -> None:
+    """The same of points that move as they will, dp/dt = u, by the classical Runge-Kutta method of order four.
+
+    Args:
+        room: (3, 2, n, L) for what the method remembers.
+    """
     h = commands.period
-    e = np.empty((2, len(law.edges), state.shape[2]))
-    start, total, slope = np.empty((3, 2, *state.shape[1:]))
+    start, total, slope = room[0], room[1], room[2]
     for k in range(len(rows)):
         _copy(state, PX, start, 0, 2)
         heard = Noise(noise.keys[k], noise.position, noise.bearing)
         for stage in range(4):
-            _obey(state, law, heard, commands, e)
+            _obey(state, law, heard, commands)
             _copy(state, WX, state, UX, 2)
             _turn_out(state, slope)
             if stage == 0:
@@ -116,8 +120,9 @@ def integrate(state: Real, rows: Real, law: Law, noise: Noise, commands: Command
 
 
 @compiled
-def _obey(state: Real, law: Law, noise: Noise, commands: Commands, e: Real) -> None:
+def _obey(state: Real, law: Law, noise: Noise, commands: Commands) -> None:
     """What the law and the commanded v_r ask of each robot, in its body frame."""
+    e = law.seen
     measure(state, law.edges, NOW, noise, e)
     c, s, gx, gy = state[COS], state[SIN], state[GX], state[GY]
     _feedback(e, c, s, law.gains, commands.delta_x, commands.delta_y, gx, gy)

@@ -53,6 +53,7 @@ class Runs:
     def __init__(self, experiment: Experiment, seeds: Sequence[int]) -> None:
         from formation.laws.angle_loop import gains  # numba is loaded only where it is used
         from robots.safety.rows import constants, things
+        from robots.safety.step import room
         from robots.worlds import lanes
         from robots.worlds.bodies import no_chassis
         from scenarios.simulation.compiled.period import Guard, Law
@@ -73,15 +74,13 @@ class Runs:
             self.state[[lanes.LEFT, lanes.RIGHT]] = np.nan
         law = cast(AngleLaw, experiment.law)  # nothing else is able
         edges = experiment.instruments.edges.astype(np.int64)
-        self._law = Law(gains(law, experiment.first_follower), edges)
+        self._law = Law(gains(law, experiment.first_follower), edges, np.empty((2, len(edges), len(seeds))))
         self._imperfections = experiment.instruments.imperfections
         saturation = experiment.scenario.robot.saturation if experiment.plant != "unicycle" else None
         self._wheels = lanes.wheels(drive, nid, saturation, n)
-        self._guard = Guard(
-            experiment.safety != "none",
-            constants(experiment.filter_settings, drive, nid, n),
-            things(experiment.arena),
-        )
+        around, settings = things(experiment.arena), constants(experiment.filter_settings, drive, nid, n)
+        self._guard = Guard(experiment.safety != "none", settings, around, room(n, len(seeds), around))
+        self._room = np.empty((3, 2, n, len(seeds)))
 
     def advance(self, most: int, recorded: bool = False) -> Iterator[Chunk]:
         """All periods, in chunks of ``most`` at most, each of one phase.
@@ -104,7 +103,7 @@ class Runs:
                 room = rows[: part.count - done]
                 noise = self._noise(len(room))
                 if self._free:
-                    integrate(self.state, room, self._law, noise, commands)
+                    integrate(self.state, room, self._law, noise, commands, self._room)
                 else:
                     after = blockers[: len(room)]
                     advance(

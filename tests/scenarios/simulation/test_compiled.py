@@ -12,6 +12,7 @@ import pytest
 
 from robots.compiled import compiled
 from robots.worlds import lanes
+from robots.worlds.lanes import sine_cosine
 from scenarios.definition.experiment import Experiment, open_experiment
 from scenarios.measures.metrics import measure
 from scenarios.measures.online.watch import Achieved, Watch
@@ -87,7 +88,7 @@ def test_sine_and_cosine_are_within_two_units_in_the_last_place() -> None:
     @compiled
     def both(angles: np.ndarray, out: np.ndarray) -> None:
         for k in range(len(angles)):
-            out[0, k], out[1, k] = lanes.sine_cosine(angles[k])
+            out[0, k], out[1, k] = sine_cosine(angles[k])
 
     angles = np.concatenate([np.linspace(-7.0, 7.0, 20001), np.random.default_rng(0).uniform(-1e4, 1e4, 20000)])
     out = np.empty((2, len(angles)))
