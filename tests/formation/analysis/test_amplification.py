@@ -4,9 +4,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
-from formation import SensingGraph, TargetFormation, settling_bound
-from formation.analysis.amplification import dwell_errors, overshoot, peak_gains, transient_gain
+from formation import SensingGraph, TargetFormation, random_target, settling_bound
+from formation.analysis.amplification import dwell_errors, moving_part, overshoot, peak_gains, transient_gain
 from formation.analysis.cascade import Cascade
 from formation.analysis.lags import shares
 from formation.analysis.noise import bias_response, noise_power, noise_rms
@@ -78,3 +79,36 @@ def test_a_displacement_that_switches_leaves_what_its_dwell_time_says(
     for switch in range(200):
         y = step @ (y + (-1) ** switch * shares(paper) * jump)
     np.testing.assert_allclose(np.abs(y), found, atol=1e-9)
+
+
+@pytest.mark.parametrize(("first_rate", "seed"), [(0.0, 1), (1.0, 3)])
+def test_gains_over_frequencies_and_overshoot_are_those_of_a_fine_search(first_rate: float, seed: int) -> None:
+    target = random_target(6, np.random.default_rng(seed), np.radians(25.0))
+    loop = Cascade.of(target, first_rate)
+    first = 1 if first_rate else 2
+    matrix = loop.whole[first:, first:]
+    by_errors = -(matrix @ bias_response(loop)[first:])
+    np.testing.assert_array_equal(moving_part(loop), matrix)
+    fastest, eye = loop.rates.max(), np.eye(len(matrix))
+    gains = []
+    for omega in np.linspace(0.0, 10.0 * fastest, 200):
+        inverse = np.linalg.solve(1j * omega * eye - matrix, eye)
+        gains.append((np.linalg.norm(inverse @ by_errors, 2), np.linalg.norm(inverse, 2)))
+    np.testing.assert_allclose(peak_gains(loop), np.max(gains, axis=0), rtol=0.01)
+    rate = 0.5 * float(loop.rates[loop.rates > 0.0].min())
+    step, state, sizes = expm(0.02 / fastest * (matrix + rate * eye)), eye, [1.0]
+    for _ in range(1500):
+        state = step @ state
+        sizes.append(float(np.linalg.norm(state, 2)))
+    assert overshoot(loop, rate, 30.0 / fastest) == pytest.approx(max(sizes), rel=3e-3)
+    plain = [float(np.linalg.norm(expm(t / fastest * matrix), 2)) for t in np.linspace(0.0, 12.0, 121)]
+    gain, when = transient_gain(loop)
+    assert gain == pytest.approx(max(plain), rel=2e-3)
+    assert gain == pytest.approx(np.linalg.norm(expm(when * matrix), 2))
+
+
+def test_errors_that_have_grown_by_the_horizon_only_count_up_to_it(paper: TargetFormation) -> None:
+    """With a rate above the slowest mode's the constant grows without end: by e^{0.1 t} here."""
+    loop = Cascade.of(paper)
+    early, late = (overshoot(loop, 0.6, horizon) for horizon in (30.0, 40.0))
+    assert 1.0 < np.log(late / early) < 1.5

@@ -64,3 +64,19 @@ def test_nothing_that_moves_stands_any_delay_and_what_grows_stands_none() -> Non
     assert most_periods([], 0.1) is None
     assert delay_margin([0.2]) == longest_period([0.2]) == 0.0
     assert most_periods([0.2], 0.1) == -1
+
+
+@given(rate=st.floats(0.1, 5.0), turn=st.floats(-1.4, 1.4), period=st.floats(0.3, 20.0))
+def test_where_the_period_is_too_long_for_a_mode_not_even_no_delay_is_stable(
+    rate: float, turn: float, period: float
+) -> None:
+    mode = -rate * np.exp(1j * turn)
+    most = most_periods([mode, -0.01], period)
+    assert (most == -1) == (longest_period([mode]) <= period)
+
+
+def test_of_several_modes_the_tightest_decides() -> None:
+    modes = [-1.0, -0.5 + 0.4j, -2.0]
+    assert delay_margin(modes) == min(delay_margin([mode]) for mode in modes)
+    assert longest_period(modes, 3) == min(longest_period([mode], 3) for mode in modes)
+    assert most_periods(modes, 0.05) == min(most_periods([mode], 0.05) or 0 for mode in modes)

@@ -94,3 +94,41 @@ def test_disturbances_of_a_centimetre_a_second_in_the_papers_shape(paper: Target
     np.testing.assert_allclose(
         disturbance_bounds(Cascade.of(paper), 0.01)[2:], [0.02, 0.0241, 0.0426, 0.0426], atol=1e-4
     )
+
+
+@settings(max_examples=20)
+@given(seed=SEEDS)
+def test_measured_positions_err_by_noise_of_place_and_of_direction_as_many_draws_do(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    target = random_target(5, rng)
+    loop = Cascade.of(target)
+    observer, observed = target.graph.edges.T
+    e = as_complex(target.positions[observed] - target.positions[observer])
+    sigma, turn = rng.uniform(0.01, 0.3), rng.uniform(0.1, 1.5)
+    draws = (20_000, len(e))
+    noise = rng.normal(0.0, sigma, draws) + 1j * rng.normal(0.0, sigma, draws)
+    measured = e * np.exp(1j * rng.normal(0.0, turn, draws)) + noise
+    expected = (np.abs(measured - e) ** 2).mean(axis=0)
+    np.testing.assert_allclose(noise_power(loop, target.positions, sigma, turn), expected, rtol=0.05)
+    np.testing.assert_allclose(noise_power(loop, target.positions, sigma), 2.0 * sigma**2)
+
+
+@given(seed=SEEDS, first_rate=st.sampled_from([0.0, 0.5, 1.0]), size=st.floats(0.001, 1.0))
+def test_disturbances_that_all_push_the_worst_way_reach_the_bound(seed: int, first_rate: float, size: float) -> None:
+    """Row by row: with a moving first follower it is where a loop of the pulls' absolute values comes to rest."""
+    target = random_target(6, np.random.default_rng(seed))
+    loop = Cascade.of(target, first_rate)
+    worst = np.eye(6)
+    for k, (i, j) in enumerate(target.graph.neighbours.tolist(), start=2):
+        worst[k, [i, j]] -= np.abs(loop.pulls[k - 2])
+    push = np.concatenate([[0.0, size / first_rate if first_rate else 0.0], size / loop.rates[1:]])
+    np.testing.assert_allclose(disturbance_bounds(loop, size), np.linalg.solve(worst, push), atol=1e-12)
+
+
+def test_a_biased_first_follower_takes_all_others_with_it_if_it_moves_at_all() -> None:
+    target = random_target(5, np.random.default_rng(3))
+    moving, standing = (bias_response(Cascade.of(target, rate))[:, 0] for rate in (0.3, 0.0))
+    z = as_complex(target.positions)
+    np.testing.assert_allclose(moving, (z - z[0]) / (z[1] - z[0]))
+    assert not standing.any()
+    assert bias_response(Cascade.of(target)).shape == (5, 7)
