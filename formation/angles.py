@@ -71,8 +71,8 @@ class AngleSet:
     def of_places(cls, positions: ArrayLike) -> AngleSet:
         """Two angles of one triangle for each agent k = 3..n, with the two earlier agents i < j that make it roundest.
 
-        They fix the shape of positions (n, 2) whatever the sensing graph is. Roundest: highest on its longest side, over
-        that side.
+        They fix the shape of positions (n, 2) whatever the sensing graph is. Roundest: highest over
+        its longest side, in shares of that side.
         """
         p = as_complex(positions)
         triples = []

@@ -17,11 +17,11 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import hashlib
 import importlib
 import json
 import math
 import os
-import random
 import re
 import resource
 import shutil
@@ -31,6 +31,7 @@ import tempfile
 import time
 import tomllib
 import traceback
+from collections import Counter
 from collections.abc import Callable
 from itertools import accumulate
 from pathlib import Path
@@ -181,6 +182,18 @@ def survives(mutant: Mutant, copy: Path, tests: list[str], seen: dict[str, Any],
         os.utime(file, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
 
 
+def drawn(every: list[Mutant], number: int, seed: int) -> list[Mutant]:
+    """A sample of the mutants, in their order; a change of the source elsewhere leaves each in it or out of it."""
+    alike: Counter[tuple[str, str, str]] = Counter()
+    ranked = []
+    for mutant in every:
+        name = mutant.path, mutant.before, mutant.after
+        alike[name] += 1
+        digest = hashlib.sha256(repr((seed, *name, alike[name])).encode()).digest()
+        ranked.append((digest, mutant))
+    return sorted(mutant for _, mutant in sorted(ranked)[:number])
+
+
 def interval(killed: int, of: int, z: float = 1.96) -> tuple[float, float]:
     """Wilson's interval of a share, 95 % for this z."""
     share, spread = killed / of, z * z / of
@@ -217,7 +230,7 @@ def main() -> None:
                 for path in sorted((copy / floor).rglob("*.py"))
                 for mutant in mutants(str(path.relative_to(copy)), path.read_text(encoding="utf-8"))
             ]
-            sample = sorted(random.Random(chosen.seed).sample(every, min(chosen.sample, len(every))))
+            sample = drawn(every, chosen.sample, chosen.seed)
             if again is not None:
                 sample = [m for m in every if (m.path, m.before, m.after) in again]
             alike = [m for m in sample if (m.path, m.before, m.after) in equivalent]
