@@ -8,6 +8,7 @@ from math import comb
 from types import MappingProxyType
 
 import numpy as np
+from numpy.typing import NDArray
 
 from formation import agents
 from formation.framework import Framework
@@ -15,6 +16,8 @@ from formation.graph.conditions import CONDITIONS
 from formation.graph.constructions import angle_slopes
 from formation.graph.directed import DirectedGraph
 from formation.plane import Complex, as_complex
+
+Real = NDArray[np.float64]
 
 MOST_CHOICES = 200_000
 """Neighbours weighed for a graph for signed angles, all growths together: some seconds."""
@@ -71,7 +74,8 @@ def laman(formation: Framework) -> DirectedGraph:
     p = as_complex(formation.positions)
     edges = [(agents.FIRST_FOLLOWER, agents.LEADER)]
     for k in range(agents.FIRST_ORDINARY, len(p)):
-        j, i = max(edges, key=lambda edge: _roundness(p, [*edge, k]))
+        corners = np.insert(p[np.array(edges)], 2, p[k], axis=1)
+        j, i = edges[_roundness(corners).argmax()]
         edges += [(k, i), (k, j)]
     return DirectedGraph.both_ways(len(p), edges)
 
@@ -81,8 +85,9 @@ def pairs_before(formation: Framework) -> DirectedGraph:
     p = as_complex(formation.positions)
     edges = [(agents.FIRST_FOLLOWER, agents.LEADER)]
     for k in range(agents.FIRST_ORDINARY, len(p)):
-        pair = max(combinations(range(k), 2), key=lambda pair: _roundness(p, [*pair, k]))
-        edges += [(k, i) for i in pair]
+        pairs = list(combinations(range(k), 2))
+        roundest = _roundness(np.insert(p[np.array(pairs)], 2, p[k], axis=1)).argmax()
+        edges += [(k, i) for i in pairs[roundest]]
     return DirectedGraph(len(p), np.array(edges))
 
 
@@ -114,7 +119,8 @@ def lateration(formation: Framework) -> DirectedGraph:
 def signed_angles(formation: Framework) -> DirectedGraph:
     """Grown from the triple of agents from which the slowest follower is fastest; each takes its best three."""
     p = as_complex(formation.positions)
-    starts = [t for t in combinations(range(len(p)), 3) if _roundness(p, list(t)) > 0.05]
+    triples = np.array(list(combinations(range(len(p)), 3)))
+    starts = [tuple(t) for t in triples[_roundness(p[triples]) > 0.05].tolist()]
     if not starts:
         raise ValueError("all agents are collinear in the target")
     most = max(1, MOST_CHOICES // (comb(min(len(p), NEAREST), 3) * len(p) ** 2))
@@ -128,26 +134,30 @@ def complete(formation: Framework) -> DirectedGraph:
     return DirectedGraph.both_ways(formation.graph.n, list(combinations(range(formation.graph.n), 2)))
 
 
-def _roundness(p: Complex, triangle: list[int]) -> float:
-    """Twice the area of a triangle over the square of its longest side; at most 0.87, 0 where it is flat."""
-    a, b, c = p[triangle]
-    longest = max(abs(a - b), abs(b - c), abs(c - a))
-    return abs(((a - c) * np.conj(b - c)).imag) / longest**2 if longest else 0.0
+def _roundness(corners: Complex) -> Real:
+    """Twice the area of triangles (..., 3) over the square of the longest side; at most 0.87, 0 where one is flat."""
+    a, b, c = np.moveaxis(corners, -1, 0)
+    longest = np.max([np.hypot(side.real, side.imag) for side in (a - b, b - c, c - a)], axis=0)
+    u, v = a - c, b - c
+    area = np.abs(u.imag * v.real - u.real * v.imag)
+    return np.divide(area, longest**2, out=np.zeros_like(area), where=longest > 0.0)
 
 
 def _threes(formation: Framework) -> Iterable[tuple[int, int]]:
     p = as_complex(formation.positions)
     for k in range(3, len(p)):
-        options = [t for t in combinations(range(k), 3) if _roundness(p, list(t)) > 1e-3]
-        if not options:
+        triples = np.array(list(combinations(range(k), 3)))
+        options = triples[_roundness(p[triples]) > 1e-3]
+        if not len(options):
             raise ValueError(f"all agents before {agents.name(k)} are collinear in the target")
-        best = min(options, key=lambda t: _weight(p, t, k))
-        yield from ((k, i) for i in best)
+        best = options[_weight(p[options] - p[k]).argmin()]
+        yield from ((k, int(i)) for i in best)
 
 
-def _weight(p: Complex, t: tuple[int, ...], k: int) -> float:
-    z = p[list(t)] - p[k]
-    return float(np.abs(np.linalg.solve(np.stack([np.ones(3), z.real, z.imag]), [1.0, 0.0, 0.0])).sum())
+def _weight(z: Complex) -> Real:
+    """The sum of the sizes of the real weights by which agents see three others along rays (..., 3)."""
+    system = np.stack([np.ones(z.shape), z.real, z.imag], axis=-2)
+    return np.abs(np.linalg.solve(system, np.array([[1.0], [0.0], [0.0]]))[..., 0]).sum(axis=-1)
 
 
 def _grow(p: Complex, start: tuple[int, ...]) -> tuple[float, list[tuple[int, int]]]:
