@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, NamedTuple
 
+import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 
@@ -30,6 +31,7 @@ class Side(NamedTuple):
 SIDES = (Side("A", style.MEASURED, "blue"), Side("B", style.SECOND, "gold"))
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a diverged run has a recording too
 def encode(experiment: Experiment, trajectory: Trajectory, metrics: Metrics, result: dict[str, Any]) -> bytes:
     """The recording of one run, as the content of an ``.rrd`` file."""
     seed = result["seed"]
@@ -45,6 +47,7 @@ def encode_run(run: Run) -> bytes:
     return encode(run.experiment, run.trajectory, metrics, run.result)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a diverged run has a recording too
 def encode_pair(runs: Sequence[Run]) -> bytes:
     """One recording of two runs, side by side and in shared axes."""
     names = [title(run.experiment, run.result["seed"]) for run in runs]
