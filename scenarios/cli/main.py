@@ -29,6 +29,9 @@ FAMILIES: tuple[tuple[click.Command, ...], ...] = (
 )
 """All commands, a family a file."""
 
+WHOLE = 1000
+"""Characters of a sentence, at most."""
+
 
 class Commands(click.Group):
     """The commands, with the nearest name for a misspelt one."""
@@ -39,6 +42,12 @@ class Commands(click.Group):
         if args and not args[0].startswith("-") and args[0] not in self.commands:
             raise InputError(f"command: no command named {args[0]!r}, {did_you_mean(args[0], self.commands)}")
         return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """The first sentence of each command as a whole, which click itself cuts off at the end of the line."""
+        with formatter.section("Commands"):
+            known = sorted(self.commands.items())
+            formatter.write_dl([(name, command.get_short_help_str(WHOLE)) for name, command in known])
 
 
 @click.group(

@@ -14,6 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
+from scenarios.cli.main import cli as commands
 from scenarios.terminal import new_table, print_table, print_wrapped
 
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
@@ -26,10 +27,21 @@ PRINTING = (
     ("show", "shape"),
     ("show", "maneuver-testbed"),
     ("show", "random-50"),
-    ("laws", "--starts", "1"),
+    ("laws", "--starts", "1", "--law", "angle", "--law", "displacement-undirected", "--law", "triangle-angles"),
     ("audit", "shape", "--starts", "0"),
     ("run", "maneuver-testbed", "--plant", "single_integrator", "--duration", "1", "--no-recording"),
-    ("sweep", "shape", "--plant", "single_integrator", "--seeds", "0:2", "--vary", "goal.angle_error_sum_rad=1,2"),
+    (
+        "sweep",
+        "shape",
+        "--seeds",
+        "0:2",
+        "--set",
+        "duration_s=1",
+        "--workers",
+        "1",
+        "--vary",
+        "robot.tyre_friction=1,2",
+    ),
 )
 
 
@@ -42,6 +54,18 @@ def test_no_command_cuts_a_character_away_at_80_columns(
     assert out
     assert err == ""
     assert "…" not in out
+
+
+def test_help_says_the_whole_first_sentence_of_every_command(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    _, out, _ = cli("--help")
+    listed = out[out.index("Commands:") :]
+    assert "..." not in listed
+    assert [line for line in out.splitlines() if len(line) > 80] == []
+    said = " ".join(listed.split())
+    for name, command in commands.commands.items():
+        sentence = " ".join((command.help or "").split("\n\n")[0].split())
+        assert f" {name} {sentence.partition('. ')[0].removesuffix('.')}." in said
 
 
 @pytest.mark.parametrize("terminal", ["none", "plain", "dumb"])
