@@ -10,6 +10,8 @@ STAMP := $(VENV)/.installed
 SCENARIO ?= shape
 
 export OMP_NUM_THREADS ?= 1
+# Tests start many processes, each of which would compile all sources anew.
+unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
 .PHONY: help install run test compile quick lint check bench peers figures dist lowest mutants fuzz kills pairs evidence screenshots gallery docs docs-check clean
@@ -31,19 +33,19 @@ run: $(STAMP) ## run a scenario (SCENARIO=shape)
 
 test: $(STAMP) ## lint, type check and the whole test suite
 	$(MAKE) --no-print-directory -j 2 lint compile
-	$(BIN)/pytest -n auto
+	$(BIN)/pytest -n auto --dist worksteal
 
 compile: $(STAMP) ## compile what commands compile once, before processes that start together would each do it
 	$(BIN)/python -m tests.compile
 
 quick: $(STAMP) ## the test suite without the Monte Carlo runs
-	$(BIN)/pytest -n auto -m 'not slow'
+	$(BIN)/pytest -n auto --dist worksteal -m 'not slow'
 
 lowest: ## the quick tests with every dependency at its lower bound, in .venv-lowest
 	$(PYTHON) -m venv $(LOWEST)
 	$(LOWEST)/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt uv
 	$(LOWEST)/bin/uv pip install --quiet --python $(LOWEST) --resolution lowest-direct --config-settings editable_mode=compat --editable '.[dev]'
-	$(LOWEST)/bin/pytest -n auto -m 'not slow'
+	$(LOWEST)/bin/pytest -n auto --dist worksteal -m 'not slow'
 
 mutants: $(STAMP) ## how many of 150 small changes of formation/, and of robots/, the tests notice (about an hour)
 	$(BIN)/python tests/mutation/run.py

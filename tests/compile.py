@@ -3,6 +3,9 @@
 Processes that start together on a fresh machine would each compile all of it.
 """
 
+import numpy as np
+
+from robots.closest_pairs import closest_pairs
 from scenarios.studies.sweep.row import run_batch
 from scenarios.studies.sweep.seeds import parse_seeds
 from scenarios.studies.sweep.study import open_study
@@ -13,3 +16,4 @@ if __name__ == "__main__":
     plants = parse_variations(("plant.name=pymunk,saturated,single_integrator",), changes)
     for batch in open_study("shape", changes, plants, parse_seeds("0:2")).batches():
         run_batch(batch)
+    closest_pairs(np.eye(2)[None])

@@ -1,7 +1,7 @@
 """Sequential activation and the lemma on collision-free motion."""
 
 import numpy as np
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from formation import (
@@ -16,6 +16,7 @@ from formation import (
 )
 
 
+@settings(max_examples=30)  # of thousands of steps each
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 8))
 def test_followers_start_in_the_order_of_the_cascade_and_keep_the_lemmas_distance(seed: int, n: int) -> None:
     rng = np.random.default_rng(seed)

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from formation import LAWS, AngleLaw, SensingGraph, TargetFormation, random_target
@@ -53,6 +53,7 @@ def failed(found: dict[str, Finding]) -> set[str]:
 # What passes
 
 
+@settings(max_examples=25)  # of seven laws each
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 9))
 def test_every_built_in_law_passes_on_every_target_and_fixes_what_theory_says(seed: int, n: int) -> None:
     target = random_target(n, np.random.default_rng(seed), np.radians(20.0))

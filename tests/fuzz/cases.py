@@ -187,7 +187,7 @@ OPTIONS: dict[str, tuple[list[str], tuple[str, ...]]] = {
     "replay": (["sound"], ("--web",)),
     "plot": (["sound", "--format", "svg"], ("--out", "--format")),
     "animate": (["sound", "--speed", "1000"], ("--format", "--speed", "--fps", "--out")),
-    "laws": (["--starts", "1"], ("--starts", "--markdown")),
+    "laws": (["--starts", "1", "--law", "distance"], ("--starts", "--law", "--markdown")),
     "audit": (["shape", "--starts", "0"], ("--starts", "--set", "--markdown")),
     "keys": ([], ("--markdown",)),
     "check": (

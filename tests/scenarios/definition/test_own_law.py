@@ -1,5 +1,6 @@
 """A user's own law: what a run of it keeps, what is refused in one line, and that looking at a run executes nothing."""
 
+import csv
 import json
 import sys
 from collections.abc import Callable
@@ -55,12 +56,12 @@ import numpy as np
 class MyLaw:
     needs_compass = False
 
-    def __init__(self, target):
-        self.calls = 0
+    def __init__(self, target, lasts=20):
+        self.calls, self.lasts = 0, lasts
 
     def __call__(self, relative, compass, delta):
         self.calls += 1
-        if self.calls > 20:
+        if self.calls > self.lasts:
             raise RuntimeError("too\\nmuch")
         return np.zeros((6, 2))
 """
@@ -222,15 +223,17 @@ def test_a_run_that_fails_in_the_middle_is_one_line_and_leaves_nothing(own: Call
 
 
 def test_worker_processes_load_the_law_and_tell_its_mistakes(own: Callable[..., str], cli: Cli) -> None:
-    sweep = ("sweep", own(), "--seeds", "0:2", "--set", "duration_s=1", "--workers", "2")
-    code, out, err = cli(*sweep, "--set", "law.parameters.gain=0.5")
+    sweep = ("sweep", own(TIRED), "--seeds", "0:2", "--set", "duration_s=1", "--workers", "2", "--out", "s")
+    code, out, err = cli(*sweep, "--vary", "law.parameters.lasts=20,1000")
     assert (code, err) == (DONE, "")
-    assert "2 runs" in out
-    own(TIRED)
-    code, out, err = cli(*sweep)
-    assert (code, err) == (DONE, "")
-    assert "failed: seeds 0, 1: my_law.py:13: a call of the law raised RuntimeError: too much\n" in out
-    assert "to see the first: formation run ./mine.toml --seed 0 --set duration_s=1\n" in out
+    with Path("s/rows.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    found = [(row["law.parameters.lasts"], row["outcome"] == "failed") for row in rows]
+    assert found == [("20", True), ("20", True), ("1000", False), ("1000", False)]
+    failed = "failed with law.parameters.lasts=20: seeds 0, 1: my_law.py:13: a call of the law raised RuntimeError"
+    assert f"{failed}: too much\n" in out
+    again = "formation run ./mine.toml --seed 0 --set duration_s=1 --set law.parameters.lasts=20"
+    assert f"to see the first: {again}  # could not be made\n" in out
 
 
 def test_nothing_is_predicted_of_an_own_law(own: Callable[..., str], cli: Cli) -> None:

@@ -1,6 +1,7 @@
 """Figures are as wide as was asked for, in the type that was asked for, and otherwise the same."""
 
 import re
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -20,6 +21,12 @@ from scenarios.interactive.single import Run
 @pytest.fixture(scope="module")
 def run() -> Run:
     return scenarios.run("shape", plant="saturated", duration=3.0)
+
+
+@pytest.fixture(scope="module")
+def saved(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The run's folder, to copy."""
+    return run.save(tmp_path_factory.mktemp("saved") / "run")
 
 
 def drawn(look: Look) -> Figure:
@@ -79,18 +86,18 @@ def test_the_type_is_of_the_family_and_the_sessions_style_is_left_alone(run: Run
     ],
 )
 def test_a_look_that_cannot_be_is_refused_in_one_line(
-    option: str, value: str, said: str, run: Run, tmp_path: Path, cli: Callable[..., tuple[int, str, str]]
+    option: str, value: str, said: str, saved: Path, tmp_path: Path, cli: Callable[..., tuple[int, str, str]]
 ) -> None:
-    run.save(tmp_path / "run")
+    shutil.copytree(saved, tmp_path / "run")
     before = {path.name: path.stat().st_mtime_ns for path in (tmp_path / "run").iterdir()}
     assert cli("plot", "run", option, value) == (2, "", f"formation: {said}\n")
     assert {path.name: path.stat().st_mtime_ns for path in (tmp_path / "run").iterdir()} == before
 
 
 def test_plot_draws_the_figures_that_are_named_as_wide_as_is_said(
-    run: Run, tmp_path: Path, cli: Callable[..., tuple[int, str, str]]
+    run: Run, saved: Path, tmp_path: Path, cli: Callable[..., tuple[int, str, str]]
 ) -> None:
-    run.save(tmp_path / "run")
+    shutil.copytree(saved, tmp_path / "run")
     code, out, _ = cli(
         "plot", "run", "--figure", "separation", "--width", "86mm", "--format", "png", "--out", "figures"
     )

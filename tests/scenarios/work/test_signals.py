@@ -80,7 +80,8 @@ scenarios.one_run.measure = lose
 @pytest.mark.parametrize("number", CODES)
 def test_a_request_that_falls_where_nothing_can_be_raised_is_made_again(tmp_path: Path, number: signal.Signals) -> None:
     before = f"exec({LOST.format(number=int(number))!r})"
-    done = formation("run", "shape", "--duration", "0.1", "--out", "mine", folder=tmp_path, before=before)
+    arguments = ("run", "shape", "--duration", "0.1", "--no-recording", "--out", "mine")
+    done = formation(*arguments, folder=tmp_path, before=before)
     assert (done.returncode, "Traceback" in done.stderr) == (CODES[number], False), done
     assert os.listdir(tmp_path) == []
 
