@@ -18,9 +18,6 @@ from scenarios.recording.views import angles, legend, plots, scene, style, summa
 
 Span = tuple[float, float]
 
-MARGIN = 0.22
-"""Metres of floor around everything that is shown."""
-
 MARGIN_SHARE = 0.06
 """The same as a share of the longer side, for a floor on which :data:`MARGIN` is too little to write in."""
 
@@ -33,14 +30,8 @@ WIDE = 2.0
 FAR = 1.5
 """Times that robots are larger in the view from near by, from which it is in front."""
 
-MOSTLY = 0.9
-"""Share of the run in which the camera that goes with the formation has all of it in sight."""
-
 LOG_RANGE = (-14.0, 1.5)
 """Decades that logarithmic plots show."""
-
-TIME_MARGIN = 1.08
-"""Length of the plots' time axis over the run's, so that its last label has room."""
 
 FIGURES = {
     plots.ANGLES: "Angle errors (rad)",
@@ -54,14 +45,10 @@ FIGURES = {
 }
 """Plots and their titles."""
 
-LEGENDS = (plots.ANGLES, plots.ERROR_SUM, plots.SEPARATION, plots.SCALE, plots.ORIENTATION, plots.CENTROID)
-"""Plots with a legend, on the right, above or below what ends there."""
+BESIDE = {plots.CLEARANCE: "Walls (m)"}
+"""How near a point and a hull come to walls and obstacles, behind the summary; tabs have room for short words."""
 
-MOST_IN_LEGEND = 4
-"""Curves above which a legend hides what it explains: their colours are those of the agents in the arena."""
-
-BESIDE = {plots.CLEARANCE: "Walls, obstacles (m)"}
-"""How near a point and a hull come to walls and obstacles, behind the summary."""
+LEGEND_BESIDE = {plots.CLEARANCE: rrb.Corner2D.RightBottom}
 
 FILTER = {plots.INTERVENTIONS: "Filter (m/s)"}
 """What the safety filter changes, behind the summary."""
@@ -80,7 +67,7 @@ def single(experiment: Experiment, points: Real, live: bool = False) -> rrb.Blue
     crowd = experiment.n > style.CROWD
     left = rrb.Vertical(
         scenery(experiment, points),
-        rrb.Horizontal(states([""], length(experiment)), notes(experiment, "")),
+        rrb.Horizontal(states([""], length(experiment)), notes(experiment, ""), column_shares=[0.75, 1.0]),
         row_shares=[2.2 if crowd else 1.85, 1.0],
     )
     absent = set()
@@ -89,7 +76,8 @@ def single(experiment: Experiment, points: Real, live: bool = False) -> rrb.Blue
     if not experiment.predicted:
         absent.add(plots.DISTANCE)
     shown = {entity: name for entity, name in FIGURES.items() if entity not in absent}
-    right = figures([""], shown, length(experiment), spans(experiment, points), legends(experiment, points))
+    span = spans(experiment, points)
+    right = figures([""], shown, length(experiment), span, plots.corners(experiment, points, span))
     beside = rrb.Grid(*right, grid_columns=2)
     return _layout(
         rrb.Horizontal(left, beside, column_shares=[1.6 if crowd else 1.35, 1.0]), "following" if live else "playing"
@@ -119,12 +107,7 @@ def scenery(experiment: Experiment, points: Real) -> rrb.Spatial2DView | rrb.Tab
 
     What is near is in front where robots would be that much larger: for a formation that leaves, or a wide floor.
     """
-    states = points.reshape(-1, experiment.n, 2)
-    spread = [
-        np.abs(each - each.mean(axis=1, keepdims=True)).max(axis=1)
-        for each in (states[np.isfinite(states).all(axis=(1, 2))], predicted_ends(experiment, states[0]))
-    ]
-    half = np.maximum(np.quantile(spread[0], MOSTLY, axis=0), spread[1].max(axis=0)) + 1.5 * MARGIN
+    half = scene.near(experiment, points)
     near = _spatial(
         "", f"/{scene.CAMERA}", "Near by, moving along", (-half[0], half[0]), (-half[1], half[1]), words=True
     )
@@ -150,7 +133,7 @@ def bounds(experiment: Experiment, points: Real) -> tuple[Real, Real]:
     floor = experiment.arena.corners
     if np.prod(np.ptp(floor, axis=0)) < WIDE * np.prod(high - low):
         low, high = np.minimum(low, floor.min(axis=0)), np.maximum(high, floor.max(axis=0))
-    margin = max(MARGIN, MARGIN_SHARE * float((high - low).max()))
+    margin = max(style.MARGIN, MARGIN_SHARE * float((high - low).max()))
     return low - margin, high + margin
 
 
@@ -192,7 +175,7 @@ def notes(experiment: Experiment, root: str) -> rrb.Tabs:
             name="Events",
             columns=rrb.TextLogColumns(timeline_columns=[TIMELINE], text_log_columns=["loglevel", "body"]),
         ),
-        *(figures([root], BESIDE, length(experiment), {}) if bounded else []),
+        *(figures([root], BESIDE, length(experiment), {}, LEGEND_BESIDE) if bounded else []),
         *(figures([root], FILTER, length(experiment), {}) if experiment.safety != "none" else []),
         active_tab="Summary",
     )
@@ -210,7 +193,7 @@ def figures(
         rrb.TimeSeriesView(
             contents=_below(roots, entity),
             name=name,
-            axis_x=rrb.TimeAxis(view_range=_times(seconds * TIME_MARGIN)),
+            axis_x=rrb.TimeAxis(view_range=_times(seconds * plots.TIME_MARGIN)),
             axis_y=rrb.ScalarAxis(range=span[entity]) if entity in span else None,
             plot_legend=rrb.PlotLegend(corner=(legends or {}).get(entity), visible=entity in (legends or {})),
         )
@@ -239,17 +222,6 @@ def spans(experiment: Experiment, points: Real) -> dict[str, Span]:
 def length(experiment: Experiment) -> float:
     """Planned length of a run, seconds."""
     return sum(phase.duration for phase in experiment.phases)
-
-
-def legends(experiment: Experiment, points: Real) -> dict[str, rrb.Corner2D]:
-    """Where the legends of plots stand, by entity; none where it would hide what it explains."""
-    low, high = spans(experiment, points)[plots.ORIENTATION]
-    seen = points.reshape(-1, experiment.n, 2)
-    turned = np.degrees(wrap(fit_similarity(experiment.formation, seen[np.isfinite(seen).all(axis=(1, 2))][-1])[1]))
-    below = {plots.SEPARATION: True, plots.SCALE: True, plots.ORIENTATION: bool(turned > (low + high) / 2.0)}
-    most = {plots.ANGLES: len(experiment.angles)}
-    corners = {True: rrb.Corner2D.RightBottom, False: rrb.Corner2D.RightTop}
-    return {entity: corners[below.get(entity, False)] for entity in LEGENDS if most.get(entity, 0) <= MOST_IN_LEGEND}
 
 
 def _path(root: str, entity: str) -> str:

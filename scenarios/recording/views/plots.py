@@ -1,4 +1,4 @@
-"""Scalars over time: angle errors, wheel speeds, separation, and how the maneuver is tracked.
+"""Scalars over time, and their legends: angle errors, wheel speeds, separation, and how the maneuver is tracked.
 
 Scalars are float64: a recording has exactly the numbers of ``trajectory.npz``.
 """
@@ -7,11 +7,14 @@ from __future__ import annotations
 
 import numpy as np
 import rerun as rr
+import rerun.blueprint as rrb
+from numpy.typing import NDArray
 
-from formation import wrap
+from formation import fit_similarity, wrap
 from robots.testbed import COLLISION_DISTANCE
+from robots.testbed import separation as closest
 from scenarios.definition.experiment import Experiment
-from scenarios.measures.tracking import fits, moving_ends
+from scenarios.measures.tracking import fits, moving_ends, predicted_ends
 from scenarios.recording.piece import Piece, Real
 from scenarios.recording.recorder import Recorder
 from scenarios.recording.views import style
@@ -21,6 +24,15 @@ ANGLES, ERROR_SUM, SEPARATION = "errors/angles", "errors/log10_sum", "separation
 WHEELS, INTERVENTIONS, CLEARANCE = "wheels", "interventions", "clearance"
 SCALE, ORIENTATION, CENTROID = "tracking/scale", "tracking/orientation", "tracking/centroid"
 DISTANCE = "tracking/log10_distance"
+
+TIME_MARGIN = 1.08
+"""Length of the plots' time axis over the run's, so that its last label has room."""
+
+MOST_IN_LEGEND = 4
+"""Curves above which a legend hides what it explains: their colours are those of the agents in the arena."""
+
+LEGEND_SHARE, LEGEND_STATES = (0.42, 0.5), 120
+"""Width and height of a legend over its plot's, and states of a run from which it sees where curves are."""
 
 SMALLEST = 1e-16
 """Radians or metres; what is smaller is drawn here, as its logarithm may not exist."""
@@ -115,6 +127,47 @@ def tracking(recorder: Recorder, piece: Piece) -> None:
         return
     distance = np.linalg.norm(points - wanted, axis=-1)
     _series(recorder, f"{DISTANCE}/value", piece.t, np.log10(np.maximum(distance, SMALLEST)))
+
+
+def corners(experiment: Experiment, points: Real, span: dict[str, tuple[float, float]]) -> dict[str, rrb.Corner2D]:
+    """Where the legends of plots stand, by entity: in the corner in which each hides least of its curves.
+
+    Args:
+        experiment: what is run.
+        points: (T, n, 2) projected points, metres.
+        span: least and largest value shown, by entity; what is not in it shows all of its curves.
+    """
+    states = points.reshape(-1, experiment.n, 2)
+    rows = np.flatnonzero(np.isfinite(states).all(axis=(1, 2)))
+    rows = rows[np.unique(np.linspace(0, len(rows) - 1, LEGEND_STATES, dtype=np.intp))]
+    x, seen = rows / (TIME_MARGIN * max(len(states) - 1, 1)), states[rows]
+    scale, angle, _ = fit_similarity(experiment.formation, seen)
+    gap = closest(seen).distance if experiment.n <= style.CROWD else np.array([])
+    curves = {
+        SEPARATION: (gap, [COLLISION_DISTANCE], rrb.Corner2D.RightBottom),
+        SCALE: (scale, [], rrb.Corner2D.RightBottom),
+        ORIENTATION: (np.degrees(wrap(angle)), [], rrb.Corner2D.RightTop),
+        CENTROID: (seen.mean(axis=1), predicted_ends(experiment, states[0]).mean(axis=1), rrb.Corner2D.RightTop),
+    }
+    found = {ERROR_SUM: rrb.Corner2D.LeftBottom}  # it begins on the left, at the top
+    for entity, (values, others, first) in curves.items():
+        known = np.append(values, others)
+        low, high = span.get(entity, (known.min(), known.max()))
+        y = (values.reshape(len(x), values.size // len(x)).T - low) / max(high - low, SMALLEST)
+        found[entity] = min((first, *CORNERS), key=lambda corner: np.count_nonzero(_hidden(corner, x, y)))
+    if len(experiment.angles) <= MOST_IN_LEGEND:
+        found[ANGLES] = rrb.Corner2D.RightTop
+    return found
+
+
+CORNERS = (rrb.Corner2D.RightTop, rrb.Corner2D.RightBottom, rrb.Corner2D.LeftTop, rrb.Corner2D.LeftBottom)
+
+
+def _hidden(corner: rrb.Corner2D, x: Real, y: Real) -> NDArray[np.bool_]:
+    """Which places of a plot, from 0 to 1 to the right and up, a legend hides."""
+    width, height = LEGEND_SHARE
+    right, top = corner in CORNERS[:2], corner in CORNERS[::2]
+    return (x > 1.0 - width if right else x < width) & (y > 1.0 - height if top else y < height)
 
 
 def _series(recorder: Recorder, entity: str, t: Real, values: Real) -> None:

@@ -42,6 +42,9 @@ GHOST_PERIODS = 10
 DOT = 3.5
 """Radius of a robot's dot in a crowd, points of the screen."""
 
+MOSTLY = 0.9
+"""Share of the run in which the camera that goes with the formation has all of it in sight."""
+
 MARK, MARK_CORNERS = 0.038, (4, 3)
 """Radius, metres, of the marks on leader and first follower, and their corners: a diamond and a triangle."""
 
@@ -93,16 +96,21 @@ def bodies(recorder: Recorder, experiment: Experiment) -> None:
     """
     names = [str(experiment.number(row)) for row in range(experiment.n)]
     crowd, fleet = experiment.n > style.CROWD, experiment.fleet
-    words = [f"{name} {role}" for name, role in zip(names, roles(experiment), strict=False)]
-    labels = words + [("" if crowd else name) for name in names[len(words) :]]
-    points = points_ahead(experiment)
+    points, words = points_ahead(experiment), labels(experiment)
     for row, (body, point) in enumerate(zip(fleet.bodies, points, strict=True)):
-        draw_bodies(recorder, RobotModel(fleet.drive, body), point, [names[row]], [labels[row]], crowd, row)
-    for row, corners in zip(range(len(words)), MARK_CORNERS, strict=False):
+        draw_bodies(recorder, RobotModel(fleet.drive, body), point, [names[row]], [words[row]], crowd, row)
+    for row, corners in zip(range(len(roles(experiment))), MARK_CORNERS, strict=False):
         turn = 2.0 * np.pi * np.arange(corners + 1) / corners
         mark = MARK * np.stack([np.cos(turn), np.sin(turn)], axis=-1) + [points[row], 0.0]
         strip = rr.LineStrips2D(mark[None].astype(np.float32), colors=style.SECOND, radii=0.005, draw_order=11.5)
         recorder.fixed(f"{ROBOTS}/{names[row]}/mark", strip)
+
+
+def labels(experiment: Experiment) -> list[str]:
+    """What stands beside each robot: its number, and its role; in a crowd nothing where it has none."""
+    names = [str(experiment.number(row)) for row in range(experiment.n)]
+    words = [f"{name} {role}" for name, role in zip(names, roles(experiment), strict=False)]
+    return words + [("" if experiment.n > style.CROWD else name) for name in names[len(words) :]]
 
 
 def points_ahead(experiment: Experiment) -> list[float]:
@@ -282,6 +290,17 @@ def camera(recorder: Recorder, piece: Piece) -> None:
     recorder.columns(CAMERA, piece.t[rows], rr.Transform3D.columns(translation=centre))
 
 
+def near(experiment: Experiment, points: Real) -> Real:
+    """Half the width and half the height, metres, of what that camera has in sight."""
+    states = points.reshape(-1, experiment.n, 2)
+    spread = [
+        np.abs(each - each.mean(axis=1, keepdims=True)).max(axis=1)
+        for each in (states[_finite(states)], predicted_ends(experiment, states[0]))
+    ]
+    half: Real = np.maximum(np.quantile(spread[0], MOSTLY, axis=0), spread[1].max(axis=0)) + 1.5 * style.MARGIN
+    return half
+
+
 def _finite(states: Real) -> Index:
     """Rows of states (T, n, k) that can be drawn: all but the last one of a run that diverged."""
     return np.flatnonzero(np.isfinite(states).all(axis=(1, 2)))
@@ -319,7 +338,7 @@ def _body(robot: RobotModel) -> tuple[Single, Single, Single]:
 
 def _ticks(arena: Arena, x: Real, y: Real) -> rr.Points2D:
     """Coordinates along the lower and the left side, metres. The viewer writes a label a little below its point."""
-    gap, (left, bottom) = style.TICK_GAP, arena.corners[0]
+    gap, (left, bottom) = style.TICK_SHARE * float(np.ptp(arena.corners, axis=0).max()), arena.corners[0]
     places = [[value, bottom] for value in x] + [[left - gap, value + 0.4 * gap] for value in y]
     labels = [f"{value:g}" for value in (*x, *y)]
     return rr.Points2D(places, labels=labels, show_labels=True, colors=style.TEXT, radii=1e-4, draw_order=-10.0)

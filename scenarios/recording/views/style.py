@@ -49,8 +49,11 @@ GRID_STEPS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 
 GRID_LINES = 11
 
-TICK_GAP = 0.12
-"""Metres between the floor's side and a coordinate beside it."""
+TICK_SHARE = 0.0375
+"""Of the floor's longer side, between the left side and a coordinate beside it."""
+
+MARGIN = 0.22
+"""Metres of floor around everything that is shown."""
 
 ARROW_INSET = 0.085
 """Metres of a sensing arrow that each of its two robots covers."""

@@ -163,7 +163,10 @@ def open_study(
     found = []
     for values in combinations(variations):
         varied = tuple(f"{variation.key}={value}" for variation, value in zip(variations, values, strict=True))
-        experiment = open_experiment(source, (*changes, *varied), duration)
+        try:
+            experiment = open_experiment(source, (*changes, *varied), duration)
+        except InputError as error:
+            raise InputError(_as_varied(str(error), variations)) from error
         require_safety(experiment, safety)
         try:
             experiment.initial_points(seeds.first)
@@ -171,6 +174,12 @@ def open_study(
             raise InputError(f"{error} (seed {seeds.first})") from error
         found.append(Combination(varied, values, experiment.file, experiment.safety, batch_size(experiment), duration))
     return Study(changes, tuple(variations), tuple(found), seeds, duration)
+
+
+def _as_varied(message: str, variations: Sequence[Variation]) -> str:
+    """What a scenario says of its changes, with the option that made this one."""
+    varied = tuple(f"--set {variation.key}=" for variation in variations)
+    return message.replace("--set", "--vary", 1) if message.startswith(varied) else message
 
 
 def batch_size(experiment: Experiment) -> int:

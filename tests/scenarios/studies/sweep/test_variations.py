@@ -5,6 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scenarios.errors import InputError
+from scenarios.studies.sweep.seeds import parse_seeds
+from scenarios.studies.sweep.study import open_study
 from scenarios.studies.sweep.variations import Variation, combinations, parse_variations
 
 VALUES = st.one_of(
@@ -48,3 +50,12 @@ def test_combinations_are_all_different_and_as_many_as_the_product(sizes: list[i
 def test_what_is_no_variation_is_refused(texts: list[str], words: str) -> None:
     with pytest.raises(InputError, match=words):
         parse_variations(texts, ["b.c=3"])
+
+
+def test_a_change_that_cannot_be_made_is_told_by_the_option_that_asked_for_it() -> None:
+    [varied] = parse_variations(["agents.9.start=[0, 1],[0, 2]"])
+    with pytest.raises(InputError, match=r"^--vary agents\.9\.start=\[0, 1\]: no entry 9"):
+        open_study("shape", (), [varied], parse_seeds("0:1"))
+    [plant] = parse_variations(["plant.name=saturated,unicycle"])
+    with pytest.raises(InputError, match=r"^--set agents\.9\.start=\[0, 1\]: no entry 9"):
+        open_study("shape", ("agents.9.start=[0, 1]",), [plant], parse_seeds("0:1"))
