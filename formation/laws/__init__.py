@@ -3,6 +3,7 @@
 __all__ = [
     "affine",
     "angle",
+    "activation_loop",
     "angle_loop",
     "another_pair",
     "area",

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from formation import agents
 from formation.laws.angle import AngleLaw
+from formation.laws.feedforward import shares
 from formation.laws.first_follower import BESIDE
+from formation.target import TargetFormation
 
 Real = NDArray[np.float64]
 
@@ -29,21 +31,36 @@ class Gains(NamedTuple):
 
     Attributes:
         factors: (n - 2, 4) real and imaginary part of -A_k^T A_i, then of -A_k^T A_j, 1/s.
+        shares: (n - 2, 2) real and imaginary part of f_k, see :mod:`formation.laws.feedforward`.
         first_follower: place in :data:`FIRST_FOLLOWERS`.
     """
 
     factors: Real
+    shares: Real
     first_follower: int
 
 
-def gains(law: AngleLaw, first_follower: str) -> Gains:
-    """The constants of a law with its first follower's name."""
+def gains(law: AngleLaw, target: TargetFormation, first_follower: str) -> Gains:
+    """The constants of a law with its target and its first follower's name."""
     factors = np.ascontiguousarray(law.gains).view(np.float64).reshape(-1, 4)
-    return Gains(factors, FIRST_FOLLOWERS.index(first_follower))
+    return Gains(factors, shares(target).view(np.float64).reshape(-1, 2), FIRST_FOLLOWERS.index(first_follower))
 
 
-def feedback(e: Real, c: Real, s: Real, law: Gains, delta_x: float, delta_y: float, gx: Real, gy: Real) -> None:
-    """Velocities in body frames, m/s, without v_r.
+def feedback(
+    e: Real,
+    c: Real,
+    s: Real,
+    law: Gains,
+    delta_x: float,
+    delta_y: float,
+    rate_x: float,
+    rate_y: float,
+    gx: Real,
+    gy: Real,
+) -> None:
+    """Velocities in body frames, m/s, without v_r, with what :class:`formation.laws.feedforward.FeedForward` adds.
+
+    A follower's mu f_k (e_kj - e_ki) is a change of its two gains.
 
     Args:
         e: (2, 2n - 3, L) relative positions, metres, each in its observer's frame, in the row order of
@@ -51,6 +68,7 @@ def feedback(e: Real, c: Real, s: Real, law: Gains, delta_x: float, delta_y: flo
         c, s: (n, L) cosine and sine of each agent's heading: its compass.
         law: constants.
         delta_x, delta_y: displacement that the first follower is told, metres, in the common frame.
+        rate_x, rate_y: mu that all are told, 1/s.
         gx, gy: (n, L) out.
     """
     runs = gx.shape[1]
@@ -80,10 +98,18 @@ def feedback(e: Real, c: Real, s: Real, law: Gains, delta_x: float, delta_y: flo
                 bx, by, wx, wy = ex / length, ey / length, tx / size, ty / size
                 along = bx * wx + by * wy
                 gx[_FIRST, m], gy[_FIRST, m] = wx - bx * along, wy - by * along
+    for m in range(runs):
+        ex, ey = e[0, 0, m], e[1, 0, m]
+        gx[_FIRST, m], gy[_FIRST, m] = (
+            gx[_FIRST, m] - rate_x * ex + rate_y * ey,
+            gy[_FIRST, m] - rate_x * ey - rate_y * ex,
+        )
     for row in range(len(law.factors)):
         k, first = _FOLLOWERS + row, 1 + 2 * row
-        i_real, i_imag = law.factors[row, 0], law.factors[row, 1]
-        j_real, j_imag = law.factors[row, 2], law.factors[row, 3]
+        share_x, share_y = law.shares[row, 0], law.shares[row, 1]
+        x, y = rate_x * share_x - rate_y * share_y, rate_x * share_y + rate_y * share_x
+        i_real, i_imag = law.factors[row, 0] - x, law.factors[row, 1] - y
+        j_real, j_imag = law.factors[row, 2] + x, law.factors[row, 3] + y
         for m in range(runs):
             ex, ey, fx, fy = e[0, first, m], e[1, first, m], e[0, first + 1, m], e[1, first + 1, m]
             gx[k, m] = (i_real * ex - i_imag * ey) + (j_real * fx - j_imag * fy)

@@ -1,8 +1,8 @@
 """Compiled functions: what numba makes of them, and how they run without it. Nothing here knows what they compute.
 
 Loading numba takes as long as everything else that a short run loads. So a function is compiled when somebody asks for
-it, and what Python calls in every run is kept as machine code that llvmlite alone can load. Compiled functions call each
-other by names of their own modules, ``f``, not ``module.f``.
+it, and what Python calls in every run is kept as machine code that llvmlite alone can load. Compiled functions call
+each other by names of their own modules, ``f``, not ``module.f``.
 """
 
 from robots.compiled.functions import compiled as compiled

@@ -21,15 +21,15 @@ from robots.worlds.protocol import NOTHING
 
 Real = NDArray[np.float64]
 
-X, Y, THETA, PX, PY, LEFT, RIGHT, INTERVENTION, RELAXATION, STUCK, WX, WY, UX, UY, CONTACT = range(15)
+X, Y, THETA, PX, PY, LEFT, RIGHT, INTERVENTION, RELAXATION, STUCK, WX, WY, UX, UY, CONTACT, ACTIVE = range(16)
 """What is recorded: pose of the axle (m, rad), projected point (m); of the last period the wheel speeds (rad/s), what
-the safety filter says (m/s, m/s, s), in the body frame, m/s, the wish of law and v_r and the command, and the row of
-whom the robot touched."""
-RECORDED = 15
-COS, SIN, SIDE, GX, GY, VX, VY, SEEN_X, SEEN_Y = range(RECORDED, RECORDED + 9)
-"""What else a state holds: heading; the filter's side; in the body frame, m/s, the law and v_r; and where others see a
-robot late, metres."""
-FIELDS = RECORDED + 9
+the safety filter says (m/s, m/s, s), in the body frame, m/s, the wish of law and v_r and the command, the row of whom
+the robot touched, and 1 where it may move, 0 where it waits."""
+RECORDED = 16
+COS, SIN, SIDE, GX, GY, VX, VY, SEEN_X, SEEN_Y, SEEN_COS, SEEN_SIN, SETTLED = range(RECORDED, RECORDED + 12)
+"""What else a state holds: heading; the filter's side; in the body frame, m/s, the law and v_r; where others see a
+robot late, metres, and its heading then; and 1 where it has been in its place, 0 where not yet."""
+FIELDS = RECORDED + 12
 
 
 class Senses(NamedTuple):
@@ -81,7 +81,7 @@ def wheels(drive: DifferentialDrive, nid: NearIdentityDiffeomorphism, saturation
 def at_rest(n: int, runs: int) -> Real:
     """The state (FIELDS, n, L) of n robots in so many runs, all at the origin."""
     state = np.zeros((FIELDS, n, runs))
-    state[COS] = state[SIDE] = 1.0
+    state[COS] = state[SIDE] = state[ACTIVE] = 1.0
     state[CONTACT] = NOTHING
     return state
 

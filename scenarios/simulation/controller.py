@@ -9,19 +9,16 @@ from numpy.typing import NDArray
 
 from formation import SequentialActivation
 from formation.laws.feedforward import FeedForward
-from formation.plane import as_vectors
 from robots.instruments import Disturbance
 from robots.obstacles import standing
 from robots.own_motion import OwnMotion, Sensed
 from scenarios.definition.experiment import Experiment
 from scenarios.simulation.guard import make_guard
 from scenarios.simulation.outages import Outages
+from scenarios.simulation.told import told
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-
-INSIDE = 1e-9
-"""Share of a period by which its ends are inside of it: above the rounding of the time."""
 
 
 class Controller:
@@ -150,17 +147,10 @@ class Controller:
 
     def _take_reference(self, elapsed: float) -> None:
         """What agents are told so many seconds into the period, where that changes during a phase."""
-        reference = self._phase.reference
-        if reference is None:
+        if self._phase.reference is None:
             return
-        t = self._begin + elapsed
-        if reference.bends.size:  # where mu jumps, each period is told its own side
-            inside = INSIDE * (self._clock - self._begin)
-            t = min(max(t, self._begin + inside), self._clock - inside)
-        self._commanded = as_vectors(reference.velocity(t))
-        if self._phase.displacement is not None:
-            self._delta = as_vectors(self._phase.displacement * reference.factor(t))
-        self._rate = complex(reference.rate(t))
+        self._commanded, self._delta, rate = told(self._phase, self._begin, self._clock, elapsed)
+        self._rate = complex(rate)
         if self._estimator is None:
             self._velocity = self._commanded
 

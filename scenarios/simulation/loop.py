@@ -20,13 +20,8 @@ from scenarios.simulation.controller import Controller
 from scenarios.simulation.guard import SafetyRecord
 from scenarios.simulation.outages import Outages, pushes, standing
 from scenarios.simulation.schedule import Part, schedule
+from scenarios.simulation.told import runge_kutta_steps
 from scenarios.simulation.trajectory import OnPeriod, OnState, Trajectory
-
-TURN_OF_STEP = 0.5
-"""1/s: the largest mu, how fast the formation turns or scales, for which a step a period is enough."""
-
-RATE_SAMPLES = 4096
-"""Instants of a run at which mu is looked at."""
 
 
 @np.errstate(over="ignore", invalid="ignore")  # a diverged run is an outcome, not a warning
@@ -85,7 +80,7 @@ def step_by_step(
         arena=experiment.arena,
         measured=experiment.measured,
         generators=generators,
-        steps=_runge_kutta_steps(experiment),
+        steps=runge_kutta_steps(experiment),
     )
     controller = Controller(experiment, generators, batch)
     parts = schedule(experiment)
@@ -142,20 +137,6 @@ def step_by_step(
         if total == done:
             break
     return trajectory.until(total + 1)
-
-
-def _runge_kutta_steps(experiment: Experiment) -> int:
-    """How many steps the single integrator takes in a control period: one for each :data:`TURN_OF_STEP` of mu.
-
-    On a circle, mu = i omega, a step h leaves the first follower by displacement off by the share h^4 omega^2 (24 i
-    omega^3 - 75 omega^2 - 80 i omega + 30) / 2880 of delta: at 1 rad/s and 33 ms, that is 3e-8. The number does not
-    depend on the period, so that errors fall with its fourth power.
-    """
-    phase = experiment.phases[0]
-    if phase.reference is None or not experiment.scenario.law.feedforward:
-        return 1
-    fastest = np.abs(phase.reference.rate(np.linspace(0.0, phase.duration, RATE_SAMPLES))).max()
-    return max(1, int(np.ceil(fastest / TURN_OF_STEP)))
 
 
 def _happen(experiment: Experiment, part: Part, world: World, controller: Controller) -> None:

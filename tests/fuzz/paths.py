@@ -24,6 +24,7 @@ ROUNDING = 1e-10
 
 COPIES = 2
 
+NAMES = ("shape", "maneuver", "maneuver", "scale-only", "orientation-only", "circle", "circle", "figure-eight")
 PLANTS = ("single_integrator", "unicycle", "saturated", "pymunk")
 OBSTACLES = "obstacles=[{vertices_m=[[0.2, 0.1]], radius_m=0.05}, {vertices_m=[[-0.4, -0.3], [-0.2, 0.4]]}]"
 EVENTS = (
@@ -35,6 +36,21 @@ TWO_PHASES = (
     "phases=[{name='a', duration_s=1.3, velocity_m_s=[0.05, 0.02], displacement_m=[0.6, 0.1]}, "
     "{name='b', duration_s=1.7, displacement_m=[0.4, -0.3]}]"
 )
+LAWS = (
+    ("law.gain='normalised'",),
+    ("agents.4.gain=1.7",),
+    ("law.activation='sequential'", "law.settled_m=0.4", "law.feedforward=false"),
+    ("law.feedforward=false",),
+)
+REFERENCES = (
+    "reference.clockwise=true",
+    "reference.orientation='kept'",
+    "reference={kind='ramps', displacement_m=[0.4, 0.1], velocities=[{t_s=0}, {t_s=1.1, velocity_m_s=[0.06, 0.02], "
+    "scale=0.9, turn_deg=20}, {t_s=2.3, velocity_m_s=[0.02, -0.05], turn_deg=-30}]}",
+    "reference={kind='way-points', displacement_m=[-0.3, 0.3], points=[{t_s=0, position_m=[0, 0]}, {t_s=1.5, "
+    "position_m=[0.1, 0.1], scale=1.2}, {t_s=3, position_m=[0.2, 0], turn_deg=60}]}",
+)
+OWN_MOTION = ("measured", "turn", "unknown")
 
 
 def scenario(number: int) -> Experiment:
@@ -45,7 +61,8 @@ def scenario(number: int) -> Experiment:
         return changes if rng.random() < share else ()
 
     plant = PLANTS[number % len(PLANTS)]
-    name = str(rng.choice(["shape", "maneuver", "scale-only", "orientation-only"]))
+    name = str(rng.choice(NAMES))
+    continuous, on_curve = plant == "single_integrator", name in ("circle", "figure-eight")
     changes = (
         f"plant.name='{plant}'",
         f"safety.filter='{rng.choice(['none', 'decentralised'])}'",
@@ -61,8 +78,12 @@ def scenario(number: int) -> Experiment:
         *(maybe(0.5, TWO_PHASES) if name == "maneuver" else ()),
         *(maybe(0.3, "law.first_follower='spiral'") if name == "maneuver" else ()),
         *maybe(0.15, f"events=[{EVENTS[number % len(EVENTS)]}]"),
-        *(maybe(0.1, "sensor.delay_periods=2") if plant != "single_integrator" else ()),
-        *maybe(0.1, "law.activation='sequential'"),
+        *(() if continuous else maybe(0.2, f"sensor.delay_periods={rng.integers(1, 9)}")),
+        *maybe(0.5, f"sensor.own_motion='{rng.choice(OWN_MOTION)}'"),
+        *maybe(0.4, *LAWS[rng.integers(len(LAWS))]),
+        *(maybe(0.5, f"reference.period_s={rng.uniform(3.0, 30.0):.2f}") if on_curve else ()),
+        *(maybe(0.6, str(rng.choice(REFERENCES))) if on_curve else ()),
+        *(maybe(0.3, "velocity_known_by='leader'") if on_curve or name == "maneuver" else ()),
         *maybe(0.1, "sensor.edge_loss=0.1"),
     )
     return open_experiment(name, changes, 3.0)

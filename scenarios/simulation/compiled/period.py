@@ -11,27 +11,38 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from formation.laws import angle_loop
+from formation.laws import activation_loop, angle_loop
+from formation.laws.activation_loop import Sequence
 from formation.laws.angle_loop import Gains
 from robots.compiled import compiled, inlined, program
 from robots.safety.rows import Constants, Things
 from robots.safety.step import Code, Room, filter_step
+from robots.senses.late import Late, remember
 from robots.senses.measure import measure
 from robots.senses.noise import Noise
 from robots.worlds.bodies import Chassis, shove
-from robots.worlds.lanes import COS, GX, GY, NOW, PX, SIN, UX, UY, VX, VY, WX, WY, Wheels, X, roll
+from robots.worlds.lanes import ACTIVE, COS, GX, GY, PX, SETTLED, SIN, UX, UY, VX, VY, WX, WY, Wheels, X, roll
 
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 
 class Commands(NamedTuple):
-    """What a phase commands: v_r (m/s) and delta (m), in the common frame, and the control period, seconds."""
+    """What agents are told in K control periods of one length, at S instants of each, in the common frame.
 
-    velocity_x: float
-    velocity_y: float
-    delta_x: float
-    delta_y: float
+    Robots with wheels act at the begin of a period; points at the begin, the middle and the end of each Runge-Kutta
+    step, of which a period has S / 3.
+
+    Attributes:
+        velocity: (K, S, 1, 2) v_r, m/s, or (K, S, n, 2) as each agent has it.
+        delta: (K, S, 2) metres; 0 where none is told.
+        rate: (K, S, 2) mu, 1/s; 0 where agents are not told it.
+        period: seconds.
+    """
+
+    velocity: Real
+    delta: Real
+    rate: Real
     period: float
 
 
@@ -45,14 +56,17 @@ class Guard(NamedTuple):
 
 
 class Law(NamedTuple):
-    """The law, its edges (m, 2), rows (observer, observed), and room (2, m, L) for what is measured along them."""
+    """The law, its edges (m, 2), rows (observer, observed), how late, who waits, and room (2, m, L) for what it sees."""
 
     gains: Gains
     edges: Index
+    late: Late
+    sequence: Sequence
     seen: Real
 
 
 _feedback = compiled(angle_loop.feedback)
+_hold = compiled(activation_loop.hold)
 
 
 @program
@@ -77,10 +91,11 @@ def advance(
     """
     for k in range(len(rows)):
         heard = Noise(noise.keys[k], noise.position, noise.bearing)
-        _obey(state, law, heard, commands)
+        remember(state, law.late)
+        _obey(state, law, heard, commands, k, 0)
         if guard.present:
-            after = blockers[k % len(blockers)]
-            filter_step(state, after, commands.period, NOW, guard.constants, guard.things, heard, guard.room)
+            after, senses = blockers[k % len(blockers)], law.late.senses
+            filter_step(state, after, commands.period, senses, guard.constants, guard.things, heard, guard.room)
         else:
             _copy(state, WX, state, UX, 2)
         if chassis.substeps > 0:
@@ -97,37 +112,42 @@ def integrate(state: Real, rows: Real, law: Law, noise: Noise, commands: Command
     Args:
         room: (3, 2, n, L) for what the method remembers.
     """
-    h = commands.period
+    instants = commands.delta.shape[1]
+    h = commands.period / (instants // 3)
     start, total, slope = room[0], room[1], room[2]
     for k in range(len(rows)):
-        _copy(state, PX, start, 0, 2)
         heard = Noise(noise.keys[k], noise.position, noise.bearing)
-        for stage in range(4):
-            _obey(state, law, heard, commands)
-            _copy(state, WX, state, UX, 2)
-            _turn_out(state, slope)
-            if stage == 0:
-                _copy(slope, 0, total, 0, 2)
-                _go(state, start, slope, h / 2.0)
-            elif stage < 3:
-                _add(total, slope, 2.0)
-                _go(state, start, slope, h / 2.0 if stage == 1 else h)
-            else:
-                _add(total, slope, 1.0)
-        _go(state, start, total, h / 6.0)
+        for first in range(0, instants, 3):
+            _copy(state, PX, start, 0, 2)
+            for stage in range(4):
+                _obey(state, law, heard, commands, k, first + (stage + 1) // 2)
+                _copy(state, WX, state, UX, 2)
+                _turn_out(state, slope)
+                if stage == 0:
+                    _copy(slope, 0, total, 0, 2)
+                    _go(state, start, slope, h / 2.0)
+                elif stage < 3:
+                    _add(total, slope, 2.0)
+                    _go(state, start, slope, h / 2.0 if stage == 1 else h)
+                else:
+                    _add(total, slope, 1.0)
+            _go(state, start, total, h / 6.0)
         _copy(state, PX, state, X, 2)
         _copy(state, 0, rows[k], 0, rows.shape[1])
 
 
 @compiled
-def _obey(state: Real, law: Law, noise: Noise, commands: Commands) -> None:
-    """What the law and the commanded v_r ask of each robot, in its body frame."""
-    e = law.seen
-    measure(state, law.edges, NOW, noise, e)
-    c, s, gx, gy = state[COS], state[SIN], state[GX], state[GY]
-    _feedback(e, c, s, law.gains, commands.delta_x, commands.delta_y, gx, gy)
-    vx, vy = commands.velocity_x, commands.velocity_y
+def _obey(state: Real, law: Law, noise: Noise, commands: Commands, k: int, instant: int) -> None:
+    """What the law and v_r ask of each robot at an instant of period k, in its body frame."""
+    senses, e = law.late.senses, law.seen
+    measure(state, law.edges, senses, noise, e)
+    c, s, gx, gy = state[senses.frame], state[senses.frame + 1], state[GX], state[GY]
+    delta, rate, velocity = commands.delta[k, instant], commands.rate[k, instant], commands.velocity[k, instant]
+    _feedback(e, c, s, law.gains, delta[0], delta[1], rate[0], rate[1], gx, gy)
+    _hold(gx, gy, law.sequence, instant == 0, state[ACTIVE], state[SETTLED])
     for i in range(state.shape[1]):
+        own = velocity[min(i, len(velocity) - 1)]
+        vx, vy = own[0], own[1]
         for m in range(state.shape[2]):
             state[VX, i, m], state[VY, i, m] = vx * c[i, m] + vy * s[i, m], vy * c[i, m] - vx * s[i, m]
             state[WX, i, m], state[WY, i, m] = gx[i, m] + state[VX, i, m], gy[i, m] + state[VY, i, m]

@@ -63,7 +63,7 @@ def _room(experiment: Experiment, state: Real) -> Trajectory:
         wheel_speeds=np.empty((*shape, 2)),
         phase=phase,
         contact=np.empty(shape, dtype=np.intp),
-        active=np.ones(shape, dtype=bool),
+        active=np.empty(shape, dtype=bool),
         intervention=np.zeros(shape),
         relaxation=np.zeros(shape),
         blockers=np.full((*shape, BLOCKERS), -1, dtype=np.int32),
@@ -86,7 +86,7 @@ def _take(room: Trajectory, chunk: Chunk) -> int:
 
 def _put(room: Trajectory, rows: slice, states: Real) -> None:
     """Write states (K, F, n, L) into rows."""
-    from robots.worlds.lanes import CONTACT, INTERVENTION, LEFT, PX, RELAXATION, STUCK, UX, WX, X
+    from robots.worlds.lanes import ACTIVE, CONTACT, INTERVENTION, LEFT, PX, RELAXATION, STUCK, UX, WX, X
 
     each = states.transpose(0, 3, 2, 1)  # (K, L, n, F)
     room.poses[rows] = each[..., X : X + 3]
@@ -96,5 +96,6 @@ def _put(room: Trajectory, rows: slice, states: Real) -> None:
     room.relaxation[rows] = each[..., RELAXATION]
     room.stuck[rows] = each[..., STUCK]
     room.contact[rows] = each[..., CONTACT]
+    room.active[rows] = each[..., ACTIVE] > 0.0
     room.wish[rows] = each[..., WX : WX + 2]
     room.command[rows] = each[..., UX : UX + 2]

@@ -9,16 +9,15 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from formation import Phase
+from formation import SequentialActivation, agents
 from formation.laws.angle import AngleLaw
 from robots.safety.protocol import BLOCKERS
 from robots.senses.noise import Noise, draw_key
 from scenarios.definition.experiment import Experiment
-from scenarios.simulation.schedule import schedule
+from scenarios.simulation.compiled.orders import orders
 
 if TYPE_CHECKING:
     from robots.worlds.contact import Contact
-    from scenarios.simulation.compiled.period import Commands
 
 Real = NDArray[np.float64]
 
@@ -51,15 +50,16 @@ class Runs:
     """
 
     def __init__(self, experiment: Experiment, seeds: Sequence[int]) -> None:
-        from formation.laws.angle_loop import gains  # numba is loaded only where it is used
+        from formation.laws.activation_loop import sequence
+        from formation.laws.angle_loop import gains
         from robots.safety.rows import constants, things
         from robots.safety.step import room
+        from robots.senses.late import late
         from robots.worlds import lanes
         from robots.worlds.bodies import no_chassis
         from scenarios.simulation.compiled.period import Guard, Law
 
-        self._phases = experiment.phases
-        self._parts = schedule(experiment)
+        self._experiment = experiment
         self._free = experiment.plant == "single_integrator"
         self._generators = [np.random.default_rng(seed) for seed in seeds]
         starts = [experiment.starts.draw(rng) for rng in self._generators]
@@ -74,7 +74,15 @@ class Runs:
             self.state[[lanes.LEFT, lanes.RIGHT]] = np.nan
         law = cast(AngleLaw, experiment.law)  # nothing else is able
         edges = experiment.instruments.edges.astype(np.int64)
-        self._law = Law(gains(law, experiment.first_follower), edges, np.empty((2, len(edges), len(seeds))))
+        activation = self._waiting(lanes.ACTIVE, lanes.SETTLED)
+        sensor = experiment.scenario.sensor
+        self._law = Law(
+            gains(law, experiment.target, experiment.first_follower),
+            edges,
+            late(self.state, sensor.delay_periods, sensor.own_motion),
+            sequence(activation, experiment.target.graph.neighbours),
+            np.empty((2, len(edges), len(seeds))),
+        )
         self._imperfections = experiment.instruments.imperfections
         saturation = experiment.scenario.robot.saturation if experiment.plant != "unicycle" else None
         self._wheels = lanes.wheels(drive, nid, saturation, n)
@@ -97,11 +105,10 @@ class Runs:
         rows = np.empty((most, RECORDED if recorded else MOTION, n, runs))
         blockers = np.full((most if recorded else 1, n, runs, BLOCKERS), -1, dtype=np.int32)
         first = 1
-        for part in self._parts:
-            commands = _commands(self._phases[part.index], part.period)
+        for part in orders(self._experiment):
             for done in range(0, part.count, most):
                 room = rows[: part.count - done]
-                noise = self._noise(len(room))
+                noise, commands = self._noise(len(room)), part.between(done, done + len(room))
                 if self._free:
                     integrate(self.state, room, self._law, noise, commands, self._room)
                 else:
@@ -109,8 +116,18 @@ class Runs:
                     advance(
                         self.state, room, after, self._law, noise, commands, self._guard, self._wheels, self._chassis
                     )
-                yield Chunk(first, part.index, room, blockers)
+                yield Chunk(first, part.phase, room, blockers)
                 first += len(room)
+
+    def _waiting(self, active: int, settled: int) -> SequentialActivation | None:
+        """Who waits for whom, with the fields of the state that tell it; None where all begin at once."""
+        experiment, law = self._experiment, self._experiment.scenario.law
+        if law.activation != "sequential":
+            return None
+        activation = SequentialActivation(experiment.target, law.settled_m, (), experiment.own_gains)
+        self.state[active] = activation.active[:, None]
+        self.state[settled, : agents.FIRST_ORDINARY] = 1.0
+        return activation
 
     def _noise(self, periods: int) -> Noise:
         """The noise of the next periods, keys (K, L)."""
@@ -130,10 +147,3 @@ def _contact(experiment: Experiment, points: Real, theta: Real) -> Contact:
     robot = replace(experiment.robot, drive=fleet.drive)
     saturation = experiment.scenario.robot.saturation
     return Contact(poses, fleet.nid, robot, saturation, experiment.arena, bodies=fleet.bodies)
-
-
-def _commands(phase: Phase, period: float) -> Commands:
-    from scenarios.simulation.compiled.period import Commands
-
-    (vx, vy), (dx, dy) = phase.velocity, phase.delta or (0.0, 0.0)
-    return Commands(float(vx), float(vy), float(dx), float(dy), period)

@@ -70,14 +70,28 @@ def test_what_is_watched_is_what_is_measured(plant: str, safety: str) -> None:
     ("change", "reason"),
     [
         ("sensor.dropout=0.1", "sensor.dropout"),
-        ("sensor.delay_periods=2", "sensor.delay_periods"),
-        ("law.activation='sequential'", "law.activation"),
+        ("sensor.gyro_noise_deg_s=1", "sensor.gyro_noise_deg_s"),
+        ("communication.message_loss=0.1", "communication.message_loss"),
+        ("events=[{t_s=1, kind='stop', agent=3}]", "events.t_s"),
         ("safety.filter='centralised'", "safety.filter = 'centralised'"),
         ("robot.model='measured'", "robot.model"),
     ],
 )
 def test_what_the_compiled_period_cannot_do_is_left_to_python_by_name(change: str, reason: str) -> None:
     assert unable(open_experiment("shape", ("plant.name='saturated'", change))) == reason
+
+
+@pytest.mark.parametrize("plant", ["single_integrator", "saturated"])
+@pytest.mark.parametrize("name", ["circle", "figure-eight", "consensus-velocity", "sequential"])
+def test_what_agents_are_told_and_who_waits_is_compiled_and_as_python_steps_it(name: str, plant: str) -> None:
+    changes = ("law.settled_m=0.1",) if name == "sequential" else ()
+    one = experiment(name, plant, "none", *changes, duration=12.0)
+    assert unable(one) is None
+    found, stepped = simulate(one, 3), step_by_step(one, 3)
+    assert np.abs(found.points - stepped.points).max() < 1e-11
+    assert np.array_equal(found.active, stepped.active)
+    assert (name != "sequential") == bool(found.active[0].all())
+    assert found.active[-1].all()
 
 
 def test_other_laws_are_left_to_python() -> None:
