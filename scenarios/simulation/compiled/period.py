@@ -56,7 +56,7 @@ class Guard(NamedTuple):
 
 
 class Law(NamedTuple):
-    """The law, its edges (m, 2), rows (observer, observed), how late, who waits, and room (2, m, L) for what it sees."""
+    """The law, its edges (m, 2), rows (observer, observed), how late, who waits, and room (2, m, L) for its input."""
 
     gains: Gains
     edges: Index
