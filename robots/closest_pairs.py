@@ -12,18 +12,37 @@ of rows.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.compiled import compiled
+from robots.compiled import compiled, program
 
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
+Pair = tuple[float, int, int]
 
 _COMPARISONS = 16  # of each point on the average, after which a sweep gives way to the grid
 _SHIFTS = 4  # of each point on the average, after which insertion gives way
 _SLACK = 1.0 + 1e-12  # of squared distances, so that rounding prunes no pair
+
+
+class Room(NamedTuple):
+    """Where the search works.
+
+    Attributes:
+        order: (2, n) rows along x and along y, as the last state left them.
+        counts: (n + 1,) of rows in places, for sorting.
+        spread: (2,) of the points along x and along y.
+        first, after: (2^k,), (n,) the cells of a grid.
+    """
+
+    order: Index
+    counts: Index
+    spread: Real
+    first: Index
+    after: Index
 
 
 def closest_pairs(points: Real) -> Index:
@@ -34,16 +53,21 @@ def closest_pairs(points: Real) -> Index:
     """
     n = points.shape[1]
     pairs = np.empty((len(points), 2), np.int64)
-    _closest_pairs(np.ascontiguousarray(points), np.random.default_rng(0).permutation(n), pairs)
+    shuffled = np.random.default_rng(0).permutation(n)
+    room = Room(
+        order=np.stack([shuffled, shuffled]),
+        counts=np.empty(n + 1, np.int64),
+        spread=np.empty(2),
+        first=np.empty(2 ** (2 * n - 1).bit_length(), np.int64),
+        after=np.empty(n, np.int64),
+    )
+    _closest_pairs(np.ascontiguousarray(points), shuffled, room, pairs)
     return pairs
 
 
-@compiled
-def _closest_pairs(points: Real, shuffled: Index, pairs: Index) -> None:
-    n = points.shape[1]
-    order, count = np.empty((2, n), np.int64), np.empty(n + 1, np.int64)
-    order[0] = order[1] = shuffled
-    spread = np.empty(2)
+@program
+def _closest_pairs(points: Real, shuffled: Index, room: Room, pairs: Index) -> None:
+    order, count, spread = room.order, room.counts, room.spread
     best = (np.inf, 0, 1)
     for row in range(len(points)):
         p = points[row]
@@ -59,7 +83,10 @@ def _closest_pairs(points: Real, shuffled: Index, pairs: Index) -> None:
             if not whole:
                 # Cells are numbered exactly up to 2^52.
                 far = _reach(p) > best[0] * 2.0**52
-                best = _coincident(p) if best[0] == 0.0 else _all_pairs(p) if far else _grid(p, shuffled, best)
+                if best[0] == 0.0:
+                    best = _coincident(p, room.after)
+                else:
+                    best = _all_pairs(p) if far else _grid(p, shuffled, best, room.first, room.after)
         pairs[row, 0], pairs[row, 1] = best[1], best[2]
 
 
@@ -83,19 +110,19 @@ def _reach(p: Real) -> float:
 
 
 @compiled
-def _apart(p: Real, i: int, j: int) -> tuple[float, int, int]:
+def _apart(p: Real, i: int, j: int) -> Pair:
     i, j = min(i, j), max(i, j)
     return math.hypot(p[i, 0] - p[j, 0], p[i, 1] - p[j, 1]), i, j
 
 
 @compiled
-def _closer(one: tuple[float, int, int], other: tuple[float, int, int]) -> bool:
+def _closer(one: Pair, other: Pair) -> bool:
     """Whether ``one`` is closer, or as close and earlier in the order of rows."""
     return one[0] < other[0] or (one[0] == other[0] and (one[1], one[2]) < (other[1], other[2]))
 
 
 @compiled
-def _all_pairs(p: Real) -> tuple[float, int, int]:
+def _all_pairs(p: Real) -> Pair:
     """By comparing all pairs, as numpy's argmin does: the first NaN is smallest."""
     best = (np.inf, 0, 1)
     for i in range(len(p)):
@@ -179,7 +206,7 @@ def _before(p: Real, axis: int, i: int, j: int) -> bool:
 
 
 @compiled
-def _sweep(p: Real, order: Index, axis: int, best: tuple[float, int, int]) -> tuple[tuple[float, int, int], bool]:
+def _sweep(p: Real, order: Index, axis: int, best: Pair) -> tuple[Pair, bool]:
     """The closest pair and True; or, where it would take too long, some close pair and False."""
     left = _COMPARISONS * len(order)
     reach2 = best[0] * best[0] * _SLACK
@@ -203,13 +230,9 @@ def _sweep(p: Real, order: Index, axis: int, best: tuple[float, int, int]) -> tu
 
 
 @compiled
-def _grid(p: Real, order: Index, best: tuple[float, int, int]) -> tuple[float, int, int]:
+def _grid(p: Real, order: Index, best: Pair, first: Index, after: Index) -> Pair:
     """The closest pair by inserting points in random order into cells as wide as the closest pair so far."""
-    n = len(order)
-    size = 1
-    while size < 2 * n:
-        size *= 2
-    first, after = np.empty(size, np.int64), np.empty(n, np.int64)
+    n, size = len(order), len(first)
     first[:] = -1
     side = best[0] * _SLACK
     k = 0
@@ -235,7 +258,7 @@ def _grid(p: Real, order: Index, best: tuple[float, int, int]) -> tuple[float, i
                 _insert(p, order[earlier], side, first, after)
         _insert(p, i, side, first, after)
         k += 1
-    return best if best[0] > 0.0 else _coincident(p)
+    return best if best[0] > 0.0 else _coincident(p, after)
 
 
 @compiled
@@ -251,9 +274,10 @@ def _bucket(cx: float, cy: float, size: int) -> int:
 
 
 @compiled
-def _coincident(p: Real) -> tuple[float, int, int]:
-    """The first pair of equal points, where there is one."""
-    order = np.arange(len(p))
+def _coincident(p: Real, order: Index) -> Pair:
+    """The first pair of equal points, where there is one; ``order`` (n,) is for use in between."""
+    for i in range(len(p)):
+        order[i] = i
     axis = min(len(p), 0)  # a variable, so that numba compiles the sort once
     _shell_sort(p, axis, order)  # equal points stand together, in the order of rows
     best = (0.0, len(p), len(p))

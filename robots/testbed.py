@@ -113,7 +113,7 @@ def separation(centres: Real) -> Separation:
     if n <= FEW:
         pairs = _by_all_pairs(points)
     else:
-        from robots.closest_pairs import closest_pairs  # loads numba
+        from robots.closest_pairs import closest_pairs  # loads compiled code
 
         pairs = closest_pairs(points)
     one, other = (np.take_along_axis(centres, pairs[:, k, None, None], axis=1)[:, 0] for k in (0, 1))
@@ -123,7 +123,7 @@ def separation(centres: Real) -> Separation:
 
 
 def _by_all_pairs(points: Real) -> NDArray[np.intp]:
-    """(T, 2) what :func:`robots.closest_pairs.closest_pairs` finds, for few robots faster than numba loads."""
+    """(T, 2) what :func:`robots.closest_pairs.closest_pairs` finds, for few robots faster than compiled code loads."""
     one, other = np.triu_indices(points.shape[1], 1)
     pairs = np.empty((len(points), 2), dtype=np.intp)
     for first in range(0, len(points), TOGETHER):
