@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import re
 import shutil
 import sys
 import textwrap
@@ -10,12 +12,14 @@ from contextlib import contextmanager
 from copy import copy
 from dataclasses import replace
 from time import monotonic
+from typing import Any
 
 from rich.console import Console, ConsoleDimensions
 from rich.markup import escape
 from rich.measure import Measurement
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeRemainingColumn
 from rich.table import Table
+from rich.text import Text
 
 from scenarios.errors import plain
 
@@ -26,7 +30,7 @@ LEFT = frozenset(
 )
 """Columns of text; all others hold numbers and are aligned right."""
 
-WRAPPED = frozenset(("title", "kind", "meaning"))
+WRAPPED = frozenset(("title", "kind", "meaning", "remark"))
 """Columns of words, which may take several lines."""
 
 PROGRESS_INTERVAL = 0.1
@@ -41,10 +45,34 @@ GAP = 2
 WIDEST = 1000
 """Characters of a line, at most."""
 
+DEEP = 2 * GAP
+"""Blanks before a line, at most, that goes on further in than it began; more are of what a label stands before."""
 
-def new_console(stderr: bool = False) -> Console:
+LABEL = re.compile(r"\S+ {2,}(?=\S)")
+"""A word that a line of a description begins with, set off by blanks: ``Goal        all angles below ...``."""
+
+
+class Terminal(Console):
+    """A console whose lines break between words where somebody reads them; programs get them whole.
+
+    What is to be copied as a whole, a command say, is printed with ``soft_wrap=True``, and the terminal breaks it.
+    """
+
+    def print(self, *objects: Any, soft_wrap: bool | None = None, **options: Any) -> None:
+        """Print; a text that is too long goes on under its first word, or under what its label is followed by."""
+        if soft_wrap is None and len(objects) == 1 and isinstance(objects[0], str) and self._is_read:
+            literal = options.get("markup") is False
+            objects = (_broken(Text(objects[0]) if literal else Text.from_markup(objects[0]), self.width),)
+        super().print(*objects, soft_wrap=soft_wrap, **options)
+
+    @property
+    def _is_read(self) -> bool:
+        return self.is_terminal or "COLUMNS" in os.environ  # who says how wide it is will read it
+
+
+def new_console(stderr: bool = False) -> Terminal:
     """The terminal; where there is none, wide enough for every table. ``stderr`` leaves the output to programs."""
-    return Console(highlight=False, soft_wrap=True, width=shutil.get_terminal_size((160, 25)).columns, stderr=stderr)
+    return Terminal(highlight=False, soft_wrap=True, width=shutil.get_terminal_size((160, 25)).columns, stderr=stderr)
 
 
 @contextmanager
@@ -99,14 +127,26 @@ def open_ended(console: Console, name: str) -> Iterator[Callable[[str], None]]:
         yield say
 
 
-def print_wrapped(console: Console, text: str) -> None:
-    """Print a line; on a terminal it breaks between words, the rest two blanks further in. Programs get it whole."""
-    if console.is_terminal:
-        inner = " " * (len(text) - len(text.lstrip()) + GAP)
-        text = textwrap.fill(
-            text, console.width, subsequent_indent=inner, break_long_words=False, break_on_hyphens=False
-        )
-    console.print(escape(text))
+def _broken(text: Text, width: int) -> Text:
+    """The text in lines of at most so many characters, but for longer words, with its styles."""
+    lines = []
+    for line in text.split("\n", allow_blank=True):
+        label, blanks = LABEL.match(line.plain), len(line.plain) - len(line.plain.lstrip())
+        inner = " " * (len(label[0]) if label else blanks if blanks > DEEP else blanks + GAP)
+        end = 0
+        for part in textwrap.wrap(
+            line.plain,
+            width,
+            subsequent_indent=inner,
+            expand_tabs=False,
+            break_long_words=False,
+            break_on_hyphens=False,
+        ) or [""]:
+            words = part.removeprefix(inner) if end else part
+            begin = line.plain.index(words, end)
+            lines.append(Text(inner if end else "") + line[begin : begin + len(words)])
+            end = begin + len(words)
+    return Text("\n").join(lines)
 
 
 def _is_watched(console: Console) -> bool:

@@ -51,7 +51,7 @@ def export(
     from scenarios.export.script import script
     from scenarios.measures.predictions.remarks import remarks
     from scenarios.storage.files import write_whole
-    from scenarios.terminal import new_console, print_wrapped
+    from scenarios.terminal import new_console
 
     changes = changed(changes, safety=safety)
     experiment = open_experiment(scenario, changes, duration)
@@ -63,7 +63,7 @@ def export(
         notes.extend(_misses(experiment, text, seed))
     told = new_console(stderr=True)
     for remark in notes:
-        print_wrapped(told, f"note: {remark}")
+        told.print(f"note: {remark}", markup=False)
     if out is not None:
         if out.exists() and not force:
             raise InputError(f"--out {out}: exists, and may hold changes of yours; --force replaces it")

@@ -107,7 +107,7 @@ def adopt(
     if simulated:
         beside = folder.with_name(f"{folder.name}-simulated")
         run_to_folder(experiment, 0, beside, console)
-        console.print(f"beside each other: formation replay {folder} {beside}", markup=False)
+        console.print(f"beside each other: formation replay {folder} {beside}", markup=False, soft_wrap=True)
     if not reached:
         raise SystemExit(MISSED)
 

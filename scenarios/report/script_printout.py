@@ -6,11 +6,12 @@ from typing import Any
 
 from numpy.typing import NDArray
 from rich.console import Console
+from rich.markup import escape
 
 from robots.rps.simulation import Record
 from scenarios.measures.script_result import OUTCOMES, describe
 from scenarios.simulation.script.script_file import ScriptFile
-from scenarios.terminal import new_table, print_table, print_wrapped
+from scenarios.terminal import new_table, print_table
 
 MOST_ROWS = 12
 """Robots that get a row each."""
@@ -19,7 +20,7 @@ MOST_ROWS = 12
 def print_script(console: Console, file: ScriptFile) -> None:
     """What is run, before it runs."""
     by = f", by {', '.join(file.marks[:3])}{', ...' if len(file.marks) > 3 else ''}" if file.marks else ""
-    print_wrapped(console, f"{file.path.name}: speaks rps {file.version}{by}")
+    console.print(escape(f"{file.path.name}: speaks rps {file.version}{by}"))
 
 
 def print_script_result(console: Console, record: Record, result: dict[str, Any]) -> None:
@@ -48,12 +49,12 @@ def print_script_result(console: Console, record: Record, result: dict[str, Any]
     testbed = result["testbed"]
     console.print(f"testbed: {'[green]accepted' if testbed['accepted'] else '[red]rejected'}")
     for violation in testbed["violations"]:
-        print_wrapped(console, f"  {describe(violation)}")
+        console.print(escape(f"  {describe(violation)}"))
     code = f" with code {result['exit_code']}" if result["exit_code"] and result["outcome"] == "exited" else ""
     how = f"[bold]{OUTCOMES[result['outcome']]}[/bold]{code}"
     console.print(f"outcome: the script {how} at {result['duration_s']:.2f} s")
     if result["advice"] is not None:
-        print_wrapped(console, f"hint: {result['advice']}")
+        console.print(escape(f"hint: {result['advice']}"))
 
 
 def _pose(pose: NDArray[Any]) -> str:

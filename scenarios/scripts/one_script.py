@@ -28,7 +28,7 @@ from scenarios.simulation.script.frames import FINAL_DOTS_PER_INCH, Camera, all_
 from scenarios.simulation.script.screen import take_the_screen_away
 from scenarios.simulation.script.script_file import ScriptFile
 from scenarios.storage import run_folder, script_folder
-from scenarios.terminal import open_ended, print_wrapped
+from scenarios.terminal import open_ended
 
 if TYPE_CHECKING:
     from scenarios.recording.script_live import ScriptView
@@ -128,7 +128,7 @@ def _session(
     def tell(text: str) -> None:
         if text not in told:
             told.add(text)
-            print_wrapped(console, f"note: {text}")
+            console.print(escape(f"note: {text}"))
 
     return Session(
         settings.plant,

@@ -15,6 +15,7 @@ from robots import make_world
 from robots.worlds import NOTHING, World
 from scenarios.definition.events.event import OBSTACLE
 from scenarios.definition.experiment import Experiment
+from scenarios.errors import InputError
 from scenarios.simulation.compiled.ability import side_by_side, unable
 from scenarios.simulation.controller import Controller
 from scenarios.simulation.guard import SafetyRecord
@@ -42,7 +43,19 @@ def simulate(
 
     Returns:
         The recorded states; cut short after the first state that is not finite.
+
+    Raises:
+        InputError: a package is of a version that this plant cannot use.
     """
+    try:
+        return _simulated(experiment, seed, on_period, on_state)
+    except ImportError as error:
+        raise InputError(f"{experiment.file.name}: plant.name: {experiment.plant}: {error}") from error
+
+
+def _simulated(
+    experiment: Experiment, seed: int | Sequence[int], on_period: OnPeriod | None, on_state: OnState | None
+) -> Trajectory:
     if unable(experiment) is not None:
         return step_by_step(experiment, seed, on_period, on_state)
     from scenarios.simulation.compiled.record import as_batch, record  # loads numba

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
+from rich.markup import escape
 
 from robots.measured import MEASURED
 from robots.model import CONTROL_PERIOD
@@ -26,7 +27,7 @@ from scenarios.export.script import script
 from scenarios.measures.window import trailing
 from scenarios.simulation.script.execute import execute
 from scenarios.simulation.script.script_file import read
-from scenarios.terminal import new_table, print_table, print_wrapped
+from scenarios.terminal import new_table, print_table
 
 Real = NDArray[np.float64]
 
@@ -147,7 +148,7 @@ def print_check(console: Console, experiment: Experiment, found: Sequence[Arriva
     console.print()
     for each in found:
         if not each.arrives:
-            print_wrapped(console, f"{each.plant}, seed {each.seed}: {why(each, experiment)}")
+            console.print(escape(f"{each.plant}, seed {each.seed}: {why(each, experiment)}"))
     if all(each.arrives for each in found):
         console.print("The testbed would run it to its goal, from every one of these starts.")
 

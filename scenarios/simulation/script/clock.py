@@ -15,10 +15,20 @@ READING = 1e-6
 """Seconds by which the clock goes on when it is read, so that who waits for it does not wait for ever."""
 
 
-class Clock:
-    """Simulated time, for the thread that drives the robots; to other threads it stands still while they sleep."""
+class StopScript(BaseException):
+    """The time given to a script is over. Not an ``Exception``: scripts catch those."""
 
-    def __init__(self) -> None:
+
+class Clock:
+    """Simulated time, for the thread that drives the robots; to other threads it stands still while they sleep.
+
+    Attributes:
+        patience: seconds that a script may sleep between two steps: who sleeps longer than its robots may drive waits
+            for something that never happens. None for as long as it likes.
+    """
+
+    def __init__(self, patience: float | None = None) -> None:
+        self.patience, self._slept = patience, 0.0
         self._begin, self._begin_monotonic = time.time(), time.monotonic()
         self._passed = 0.0
         self._driver = threading.get_ident()
@@ -28,6 +38,7 @@ class Clock:
         """Go on by one step of the robots."""
         self._driver = threading.get_ident()
         self._passed += seconds
+        self._slept = 0.0
 
     def time(self) -> float:
         """In the place of ``time.time``."""
@@ -40,11 +51,18 @@ class Clock:
         return self._begin_monotonic + self._passed
 
     def sleep(self, seconds: float) -> None:
-        """In the place of ``time.sleep``."""
+        """In the place of ``time.sleep``.
+
+        Raises:
+            StopScript: the script has slept for longer than :attr:`patience` since its last step.
+        """
         if seconds < 0.0:
             raise ValueError("sleep length must be non-negative")
         if threading.get_ident() == self._driver:
             self._passed += seconds
+            self._slept += seconds
+            if self.patience is not None and self._slept > self.patience:
+                raise StopScript
             self._sleep(0.0)
         else:
             self._sleep(min(seconds, 1e-3))  # wait for who drives, in real time

@@ -24,7 +24,7 @@ from robots.model import CONTROL_PERIOD
 from robots.rps.hook import serving
 from robots.rps.robotarium import Robotarium
 from robots.rps.session import Session, during
-from scenarios.simulation.script.clock import Clock
+from scenarios.simulation.script.clock import Clock, StopScript
 from scenarios.simulation.script.hints import hint
 from scenarios.simulation.script.script_file import ScriptFile
 
@@ -33,10 +33,6 @@ Outcome = Literal["ended", "exited", "raised", "interrupted", "stopped"]
 OURS = tuple(str(Path(path).resolve()) for room in (robots, scenarios) for path in room.__path__)
 POLL = 0.1
 """Seconds between two looks at whether threads of a script have ended."""
-
-
-class StopScript(BaseException):
-    """The time given to a script is over. Not an ``Exception``: scripts catch those."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,10 +69,11 @@ def execute(
         arguments: what it finds in ``sys.argv`` after its name.
         session: how its robots are simulated.
         seed: of numpy's and Python's global generators when it begins.
-        duration: simulated seconds after which its robots take no further step; None for no end.
+        duration: simulated seconds after which its robots take no further step, and that it may sleep between two;
+            None for no end.
     """
     made: list[Robotarium] = []
-    clock, threads = Clock(), set(threading.enumerate())
+    clock, threads = Clock(duration), set(threading.enumerate())
 
     def begun(robots: Robotarium) -> None:
         made.append(robots)

@@ -38,7 +38,7 @@ def print_folders(console: Console, check: Check, folders: Folders) -> None:
     """How to look at the runs that missed."""
     for comparison in check.missed:
         if comparison in folders:
-            console.print(plain(f"formation replay {folders[comparison]}"), markup=False)
+            console.print(plain(f"formation replay {folders[comparison]}"), markup=False, soft_wrap=True)
     others = len(check.missed) - len(folders)
     if others:
         console.print(f"and {others} more; `formation run` makes them again")

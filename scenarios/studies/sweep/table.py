@@ -68,7 +68,7 @@ def _print_missed(console: Console, study: Study, summaries: Sequence[Summary]) 
             examples.setdefault(misses.cause, study.command(combination, misses.seeds[0]))
     for cause, example in examples.items():
         which = f"  # {MEANINGS[cause]}" if len(examples) > 1 else ""
-        console.print(escape(f"to see the first: {example}{which}"))
+        console.print(escape(f"to see the first: {example}{which}"), soft_wrap=True)
 
 
 def _print_combinations(console: Console, study: Study, summaries: Sequence[Summary]) -> None:

@@ -14,9 +14,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
+import pymunk
 import pytest
 
 from robots import PLANTS
+from robots.worlds import chipmunk
 from scenarios import one_run, open_experiment
 from scenarios.cli import BAD_INPUT, DONE, MISSED
 from scenarios.definition.load import LIBRARY, library
@@ -153,6 +155,16 @@ def test_a_diverged_run_is_told_without_a_warning(cli: Cli) -> None:
 
 
 # What it refuses
+
+
+@pytest.mark.parametrize("law", ["angle", "own"])
+def test_a_version_of_pymunk_that_lacks_what_is_used_is_one_line(
+    cli: Cli, monkeypatch: pytest.MonkeyPatch, law: str
+) -> None:
+    monkeypatch.setattr(chipmunk, "FUNCTIONS", (*chipmunk.FUNCTIONS, "cpOfLater"))
+    name = "own-law" if law == "own" else "shape"  # by Python, and compiled
+    words = (f"{name}: plant.name: pymunk: pymunk {pymunk.version} has no function cpOfLater: expected 7.1 to 7.3",)
+    refused(cli("run", name), *words)
 
 
 @pytest.mark.parametrize(

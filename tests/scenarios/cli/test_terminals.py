@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -15,7 +16,7 @@ from hypothesis import strategies as st
 from rich.console import Console
 
 from scenarios.cli.main import cli as commands
-from scenarios.terminal import new_table, print_table, print_wrapped
+from scenarios.terminal import Terminal, new_table, print_table
 
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
 
@@ -88,16 +89,44 @@ def test_a_table_keeps_every_digit_whatever_shows_it(terminal: str, width: int) 
     assert console.width == (80 if terminal == "dumb" else width)
 
 
+def printed(text: str, width: int, terminal: bool, **options: bool) -> str:
+    """What a terminal of some width, or something else, gets of a text."""
+    got = io.StringIO()
+    Terminal(file=got, width=width, force_terminal=terminal, highlight=False, soft_wrap=True).print(text, **options)
+    return got.getvalue()
+
+
 @pytest.mark.parametrize("terminal", [True, False])
-def test_a_long_line_breaks_between_words_on_a_terminal_alone(terminal: bool) -> None:
-    printed = io.StringIO()
-    console = Console(file=printed, width=30, force_terminal=terminal, highlight=False, soft_wrap=True)
+def test_a_long_line_breaks_between_words_on_a_terminal_alone(terminal: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("COLUMNS", raising=False)
     text = f"  note: {'word [bold] ' * 8}".rstrip()
-    print_wrapped(console, text)
-    lines = printed.getvalue().splitlines()
-    assert printed.getvalue().split() == text.split()
+    found = printed(text, 30, terminal, markup=False)
+    lines = found.splitlines()
+    assert found.split() == text.split()
     assert (len(lines) > 1) == terminal
     assert not terminal or (max(map(len, lines)) <= 30 and all(line.startswith("    ") for line in lines[1:]))
+    assert printed(text, 30, terminal, markup=False, soft_wrap=True) == f"{text}\n"
+    monkeypatch.setenv("COLUMNS", "30")
+    assert printed(text, 30, False, markup=False).splitlines() == lines or not terminal
+
+
+def test_what_a_label_stands_before_goes_on_under_its_first_word() -> None:
+    lines = printed("Goal        all errors\n            of angles small, and no more\n[bold]a b[/bold]: c", 24, True)
+    assert re.sub(r"\x1b\[\d*m", "", lines).splitlines() == [
+        "Goal        all errors",
+        "            of angles",
+        "            small, and",
+        "            no more",
+        "a b: c",
+    ]
+
+
+@given(words=st.lists(st.text(st.sampled_from("ab]\\ "), max_size=30)), width=st.integers(20, 60))
+def test_no_character_but_blanks_at_the_end_of_a_line_is_lost(words: list[str], width: int) -> None:
+    text = "\n".join(words)
+    found = printed(text, width, True, markup=False)
+    assert found.replace(" ", "").replace("\n", "") == text.replace(" ", "").replace("\n", "")
+    assert all(len(line) <= width or len(line.split()) == 1 for line in found.splitlines())
 
 
 @given(widths=st.lists(st.integers(1, 30), min_size=2, max_size=12), width=st.integers(40, 200))

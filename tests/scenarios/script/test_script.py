@@ -107,6 +107,12 @@ def test_a_script_that_never_ends_is_stopped_when_its_time_is_over(run: Callable
     assert "was stopped at the end of --duration" in out
 
 
+def test_a_script_that_sleeps_and_steps_no_more_is_stopped_when_its_time_is_over(run: Callable) -> None:
+    code, out, _, result = run("import time\ntime.sleep(0.9)\ngo(2)\nwhile True: time.sleep(0.3)\n", "--duration", "1")
+    assert (code, result["outcome"], result["steps"]) == (0, "stopped", 2)
+    assert "was stopped at the end of --duration" in out
+
+
 def test_a_script_without_an_end_is_stopped_after_an_hour_of_its_own_time(
     run: Callable, monkeypatch: pytest.MonkeyPatch
 ) -> None:
