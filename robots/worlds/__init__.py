@@ -21,9 +21,20 @@ from robots.worlds.kinematic import Unicycle as Unicycle
 from robots.worlds.protocol import NOTHING as NOTHING
 from robots.worlds.protocol import Controller as Controller
 from robots.worlds.protocol import Real
+from robots.worlds.protocol import UnsupportedVersionError as UnsupportedVersionError
 from robots.worlds.protocol import World as World
 
-__all__ = ["Controller", "NOTHING", "PLANTS", "Saturated", "SingleIntegrator", "Unicycle", "World", "make_world"]
+__all__ = [
+    "Controller",
+    "NOTHING",
+    "PLANTS",
+    "Saturated",
+    "SingleIntegrator",
+    "Unicycle",
+    "UnsupportedVersionError",
+    "World",
+    "make_world",
+]
 
 PLANTS = ("single_integrator", "unicycle", "saturated", "pymunk")
 """The worlds by the name that scenario files and the command line use, from the simplest to the most real."""

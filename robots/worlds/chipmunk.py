@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from robots.compiled import compiled, intrinsic, program
 from robots.compiled.memory import ARRAY, AT
-from robots.worlds.protocol import NOTHING
+from robots.worlds.protocol import NOTHING, UnsupportedVersionError
 
 if TYPE_CHECKING:
     import pymunk
@@ -90,7 +90,7 @@ def bodies_of(space: pymunk.Space, watched: Sequence[pymunk.Body]) -> tuple[Bodi
     """The bodies of a space, those watched first, and what must live as long as they are used.
 
     Raises:
-        ImportError: this version of pymunk lacks what is needed; the message says what.
+        UnsupportedVersionError: this version of pymunk lacks what is needed; the message says what.
     """
     ffi, lib = _library()
 
@@ -140,10 +140,10 @@ def _library() -> tuple[Any, Any]:
     try:
         from pymunk._chipmunk_cffi import ffi, lib
     except ImportError as error:
-        raise ImportError(f"pymunk {pymunk.version} has no _chipmunk_cffi: expected 7.1 to 7.3") from error
+        raise UnsupportedVersionError(f"pymunk {pymunk.version} has no _chipmunk_cffi: expected 7.1 to 7.3") from error
     for name in (*FUNCTIONS, *ROOM):
         if not hasattr(lib, name):
-            raise ImportError(f"pymunk {pymunk.version} has no function {name}: expected 7.1 to 7.3")
+            raise UnsupportedVersionError(f"pymunk {pymunk.version} has no function {name}: expected 7.1 to 7.3")
     return ffi, lib
 
 

@@ -22,6 +22,10 @@ Controller = Callable[[Real, Real, float], Real]
 began, to body-frame velocities (..., n, 2), m/s, of the projected points."""
 
 
+class UnsupportedVersionError(ImportError):
+    """A package lacks what a world needs of it; the message says which versions have it."""
+
+
 class World(Protocol):
     """A plant.
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from robots import make_world
-from robots.worlds import NOTHING, World
+from robots.worlds import NOTHING, UnsupportedVersionError, World
 from scenarios.definition.events.event import OBSTACLE
 from scenarios.definition.experiment import Experiment
 from scenarios.errors import InputError
@@ -49,7 +49,7 @@ def simulate(
     """
     try:
         return _simulated(experiment, seed, on_period, on_state)
-    except ImportError as error:
+    except UnsupportedVersionError as error:
         raise InputError(f"{experiment.file.name}: plant.name: {experiment.plant}: {error}") from error
 
 
