@@ -34,7 +34,7 @@ def make_filter(
     if name == "none":
         return None
     if name == "decentralised":
-        from robots.safety.decentralised import DecentralisedFilter  # numba is loaded only where it is used
+        from robots.safety.decentralised import DecentralisedFilter
 
         return DecentralisedFilter(shape, drive, nid, settings, arena)
     if name == "centralised":

@@ -26,7 +26,7 @@ def compile_for(experiment: Experiment, run: Callable[[], object] | None = None)
     kernel = _kernel(experiment)
     if kernel is None:
         return
-    from robots.compiled import at_hand  # numba is loaded only where it is used
+    from robots.compiled import at_hand
 
     if at_hand(kernel):
         return

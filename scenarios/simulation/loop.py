@@ -58,7 +58,7 @@ def _simulated(
 ) -> Trajectory:
     if unable(experiment) is not None:
         return step_by_step(experiment, seed, on_period, on_state)
-    from scenarios.simulation.compiled.record import as_batch, record  # loads numba
+    from scenarios.simulation.compiled.record import as_batch, record
 
     if isinstance(seed, int):
         return record(experiment, [seed], on_period, on_state, alone=True)

@@ -50,7 +50,7 @@ class Watch:
     """
 
     def __init__(self, experiment: Experiment, state: Real) -> None:
-        from scenarios.measures.online.watching import Angles, Ground, Seen
+        from scenarios.measures.online.watching import Angles, Ground, Seen, room
 
         runs = state.shape[2]
         targets = experiment.target_angles
@@ -66,7 +66,7 @@ class Watch:
         self._ground = Ground(np.array([*experiment.arena.x, *experiment.arena.y]), _way(experiment))
         doubtful, off_floor, self._on_obstacle = np.zeros((3, runs), dtype=bool)
         self._seen = Seen(np.full(runs, -1, dtype=np.int64), doubtful, np.full(runs, np.inf), off_floor, np.zeros(runs))
-        self._state = state
+        self._state, self._room = state, room(runs)
         self.take(Chunk(0, 0, state[None], np.empty((0, *state.shape[1:], 0), dtype=np.int32)))
 
     def take(self, chunk: Chunk) -> None:
@@ -75,7 +75,7 @@ class Watch:
 
         rows, experiment = chunk.rows, self._experiment
         centres = rows if ahead_as_checked(experiment) else self._centred(rows)
-        look(rows, centres, chunk.first, self._angles, self._ground, self._seen)
+        look(rows, centres, chunk.first, self._angles, self._ground, self._seen, self._room)
         if experiment.arena.obstacles:
             from robots.worlds.lanes import PX, PY
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.compiled import compiled, inlined
+from robots.compiled import compiled, inlined, program
 from robots.worlds.lanes import LEFT, PX, PY, RIGHT, X, Y
 
 Real = NDArray[np.float64]
@@ -71,8 +71,33 @@ class Seen(NamedTuple):
     fastest: Real
 
 
-@compiled
-def look(rows: Real, checked: Real, first: int, angles: Angles, ground: Ground, seen: Seen) -> None:
+class Room(NamedTuple):
+    """Where the watch works, (L,) each.
+
+    Attributes:
+        way: metres that a robot may have gone since a state.
+        square: least squared distance of two robots, square metres.
+        beyond: how far an axle is off the floor, metres.
+        low, high: bounds of the error sum, radians.
+        undecided: whether the last state above the goal may come earlier.
+    """
+
+    way: Real
+    square: Real
+    beyond: Real
+    low: Real
+    high: Real
+    undecided: Flags
+
+
+def room(runs: int) -> Room:
+    """Room for so many runs."""
+    way, square, beyond, low, high = np.empty((5, runs))
+    return Room(way, square, beyond, low, high, np.empty(runs, dtype=bool))
+
+
+@program
+def look(rows: Real, checked: Real, first: int, angles: Angles, ground: Ground, seen: Seen, room: Room) -> None:
     """Look at a chunk of states.
 
     Args:
@@ -81,15 +106,15 @@ def look(rows: Real, checked: Real, first: int, angles: Angles, ground: Ground, 
         first: number of the first of them.
         seen: is brought up to date.
     """
-    runs = rows.shape[3]
-    way, square = np.zeros(runs), np.empty(runs)
+    runs, way, square = rows.shape[3], room.way, room.square
+    way[:] = 0.0
     _fastest(rows, way)
     for m in range(runs):
         seen.fastest[m] = max(seen.fastest[m], way[m])
         way[m] = way[m] * ground.way * (len(rows) - 1) * (1.0 + _ROUNDED) + _ROUNDED
-    _beyond_floor(rows, ground.floor, way, seen.off_floor)
+    _beyond_floor(rows, ground.floor, way, room.beyond, seen.off_floor)
     _nearest(checked, way, square, seen.least)
-    _last_above(rows, first, angles, way, square, seen.last_above, seen.doubtful)
+    _last_above(rows, first, angles, room, seen.last_above, seen.doubtful)
 
 
 @compiled
@@ -103,9 +128,10 @@ def _fastest(rows: Real, fastest: Real) -> None:
 
 
 @compiled
-def _beyond_floor(rows: Real, floor: Real, way: Real, found: Flags) -> None:
-    """Flag the runs in which an axle is off the floor."""
-    beyond, runs = np.full(len(found), -np.inf), len(found)
+def _beyond_floor(rows: Real, floor: Real, way: Real, beyond: Real, found: Flags) -> None:
+    """Flag the runs in which an axle is off the floor; ``beyond`` (L,) is for use in between."""
+    runs = len(found)
+    beyond[:] = -np.inf
     _excess(rows[-1], floor, beyond)
     far = 0
     for m in range(runs):
@@ -172,15 +198,15 @@ def _closest(x: Real, y: Real, square: float, least: float) -> float:
 
 
 @compiled
-def _last_above(rows: Real, first: int, angles: Angles, way: Real, square: Real, last: Index, doubtful: Flags) -> None:
+def _last_above(rows: Real, first: int, angles: Angles, room: Room, last: Index, doubtful: Flags) -> None:
     """Set ``last`` to the last state in which the error sum is not below the goal, where there is one.
 
     States are looked at from the last one, and no further back than needed; bounds of the errors, without the arc
     tangent, decide nearly all.
     """
     runs, before = rows.shape[3], len(rows) - 1
-    undecided = np.ones(runs, np.bool_)
-    low, high = np.empty(runs), np.empty(runs)
+    way, square, low, high, undecided = room.way, room.square, room.low, room.high, room.undecided
+    undecided[:] = True
     _decide(rows[before], first + before, angles, low, high, undecided, last, doubtful)
     _squares(rows[before], square)
     for m in range(runs):
