@@ -254,3 +254,21 @@ def test_a_law_that_answers_from_one_array_of_its_own_is_not_confused_with_itsel
         return answer
 
     assert failed(findings(Bent(reused))) == set()
+
+
+def test_velocities_that_differ_by_a_billionth_of_the_greatest_speed_are_the_same() -> None:
+    def leaning(share: float) -> Finding:
+        def bend(u: Real, relative: Real, _: Real) -> Real:
+            u[3] *= 1.0 + share * relative[4, 0] / np.hypot(*relative[4])
+            return u
+
+        return findings(Bent(bend))["local frames"]
+
+    slope = (leaning(1e-4).measured or 0.0) / 1e-4
+    assert leaning(0.9e-9 / slope).holds is True
+    assert leaning(1.1e-9 / slope).holds is False
+
+
+def test_a_law_that_never_moves_anybody_reads_nothing_of_others_and_uses_nothing() -> None:
+    found = findings(Bent(lambda u, relative, _: 0.0 * np.nan_to_num(u)))
+    assert failed(found) == {"measurements", "zero modes", "local stability"}

@@ -80,6 +80,19 @@ def test_way_points_are_passed_at_their_times_and_both_ends_are_at_rest() -> Non
     assert WAY.path(30.0) == WAY.path(20.0)
 
 
+def test_way_points_that_arrive_moving_stop_at_the_last_all_at_once() -> None:
+    times = np.array([0.0, 3.0, 7.0, 10.0])
+    way = WayPoints(times, times * (0.1 + 0.2j), 1.0 + 0.1 * times, 0.05 * times, moving=True)
+    assert way.bends.tolist() == [10.0]
+    assert abs(way.velocity(9.999) - (0.1 + 0.2j)) < 1e-12
+    assert abs(way.velocity(0.0) - (0.1 + 0.2j)) < 1e-12
+    assert abs(way.rate(9.999)) > 0.05
+    assert np.abs([way.velocity(10.0), way.rate(10.0), way.velocity(12.0), way.rate(12.0)]).max() == 0.0
+    assert WAY.bends.size == 0
+    with pytest.raises(ValueError, match="scales must be positive"):
+        WayPoints(times, times + 0j, np.array([1.0, 2.0, 0.0, 1.0]), times)
+
+
 def test_way_points_are_twice_continuously_differentiable() -> None:
     for knot in (7.0, 15.0):
         sides = np.array([knot - 2e-4, knot - 1e-4, knot + 1e-4, knot + 2e-4])

@@ -85,3 +85,20 @@ def test_a_loop_that_is_no_cascade_has_the_modes_of_the_whole() -> None:
     assert not loop.cascade
     np.testing.assert_allclose(np.sort(loop.modes.real.ravel()), [-2.0, -2.0, 0.0, 0.0], atol=1e-12)
     assert loop.zero_modes == 2
+
+
+def test_modes_come_two_for_each_agent_whether_the_loop_is_a_cascade_or_not() -> None:
+    coupled = Linearisation(np.random.default_rng(0).normal(size=(6, 6)), 0.0)
+    assert not coupled.cascade
+    assert (coupled.n, coupled.modes.shape) == (3, (3, 2))
+    apart = Linearisation(np.kron(np.diag([-1.0, -2.0, -3.0]), np.eye(2)), 0.0)
+    assert apart.cascade
+    np.testing.assert_allclose(apart.modes, [[-1.0, -1.0], [-2.0, -2.0], [-3.0, -3.0]])
+
+
+def test_of_a_parabola_the_derivative_is_exact_and_of_a_kink_the_bound_is_its_jump() -> None:
+    parabola = linearise(lambda p: p + 3.0 * p**2, np.zeros((1, 2)), 0.1)
+    np.testing.assert_allclose(parabola.matrix, np.eye(2), atol=1e-13)
+    assert parabola.bound < 1e-12
+    kink = linearise(lambda p: np.abs(p) + 5.0 * p**2, np.zeros((1, 2)), 0.1)
+    assert kink.bound == pytest.approx(2.0)

@@ -78,3 +78,34 @@ def test_a_graph_that_lacks_agents_is_no_graph_yet() -> None:
     choice = subgraph(Field.of_edges(PENTAGON, CYCLE), (0, 1))
     with pytest.raises(ValueError, match="not reached"):
         choice.graph()
+
+
+def test_of_many_agents_out_of_reach_a_remedy_is_found_that_may_not_be_the_smallest() -> None:
+    places = np.random.default_rng(4).normal(size=(15, 2))
+    nobody = Field(places, np.zeros((15, 15), dtype=bool))
+    found = remedy(nobody, (0, 1), needs_edge=True)
+    assert not found.fewest
+    assert found.edges[0] == (1, 0)
+    assert len(found.edges) == 1 + 2 * 13
+    assert subgraph(mended(nobody, found.edges), (0, 1)).whole
+    few = Field(places[:8], np.zeros((8, 8), dtype=bool))
+    assert remedy(Field(places[:3], few.allowed[:3, :3]), (0, 1), needs_edge=False).fewest
+    linked = few.allowed.copy()
+    linked[2:, 2:] = ~np.eye(6, dtype=bool)  # all the others see each other: two of them have to be given two edges
+    found = remedy(Field(places[:8], linked), (0, 1), needs_edge=False)
+    assert found.fewest
+    assert len(found.edges) <= 4
+
+
+def test_up_to_thirty_agents_all_leaders_are_tried() -> None:
+    places = np.random.default_rng(4).normal(size=(31, 2))
+    found = free_remedy(Field.open(places[:30]), needs_edge=False)
+    assert found is not None
+    assert (found.leaders, found.edges) == ((0, 1), ())
+    assert free_remedy(Field.open(places), needs_edge=False) is None
+
+
+def test_two_agents_in_one_place_cannot_be_told_apart() -> None:
+    places = np.array([[0.0, 0.0], [0.0, 0.0], [1.0, 0.0]])
+    with pytest.raises(ValueError, match="two agents that coincide cannot be told apart"):
+        remedy(Field.open(places), (0, 1), needs_edge=False)
