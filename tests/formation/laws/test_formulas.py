@@ -140,6 +140,16 @@ def test_affine_followers_keep_real_weights_of_three_that_give_their_place(seed:
             assert u[k] == pytest.approx((c * (p[seen] - p[k])).sum())
 
 
+def test_leaders_of_an_affine_formation_stand_still_whomever_they_sense() -> None:
+    target, star, p = drawn(3, 4)
+    graph = DirectedGraph(4, np.array([[1, 0], [2, 0], [2, 1], [3, 0], [3, 1], [3, 2]]))
+    formation = Framework(graph, target.positions)
+    u = velocities(AffineLaw(formation), formation, p)
+    assert not u[:3].any()
+    assert u[3] != 0.0
+    assert velocities(AffineLaw(formation), formation, star)[3] == pytest.approx(0.0, abs=1e-12)
+
+
 def test_affine_followers_of_neighbours_on_one_line_are_refused_by_number() -> None:
     places = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0]])
     graph = DirectedGraph(4, np.array([[3, 0], [3, 1], [3, 2]]))
