@@ -50,6 +50,13 @@ def test_every_number_of_a_synthetic_robot_lies_within_twice_its_interval(found:
         assert abs(interval.value - truth) < 2.0 * half, name
 
 
+def test_a_noise_that_the_log_tells_from_none_has_an_interval_about_it_in_shares(found: Identified) -> None:
+    for name in ("jitter", "slip_turning", "slip_heading"):
+        interval = found.intervals[name]
+        assert 0.0 < interval.low < interval.value < interval.high
+        assert interval.value**2 == pytest.approx(interval.low * interval.high)
+
+
 def test_whitened_residuals_are_white(found: Identified) -> None:
     white = found.residuals[np.isfinite(found.residuals[:, 0])]
     assert np.allclose(white.std(axis=0), 1.0, atol=0.06)

@@ -2,7 +2,7 @@
 
 Sizes in metres after S. Kim et al. 2024, "GTernal: A Robot Design for the Autonomous Operation of a Multi-robot
 Research Testbed" (not checked against the text), as the public simulator draws them: 0.095 m long with a round front,
-0.11 m wide over its wheels, the axle 0.016 m ahead of the back.
+0.11 m wide between the middles of its wheels, the axle 0.016 m ahead of the back.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Arguments that a script leaves out have the public simulator's own values, generation by generation.
+"""Arguments that a script leaves out, and constants, have the public simulator's own values, by generation.
 
 Read from its repository, robotarium_python_simulator: generation 2 at b23069e, generation 1 at 8f00bdc.
 """
@@ -7,7 +7,10 @@ import importlib
 import inspect
 from math import pi
 
+import numpy as np
 import pytest
+
+from robots.rps import constants
 
 FLOOR = (-1.6, 1.6, -1.0, 1.0)
 
@@ -219,3 +222,42 @@ def test_what_is_left_out_is_what_it_is_there(version: int, module: str, name: s
     given = {key: value.default for key, value in inspect.signature(function).parameters.items()}
     expected = DEFAULTS[version, module][name]
     assert {key: given[key] for key in expected} == expected
+
+
+CONSTANTS: dict[str, object] = {
+    "TIME_STEP": 0.033,
+    "MAX_LINEAR_VELOCITY": 0.2,
+    "MAX_ANGULAR_VELOCITY": 2.0 * 0.2 / 0.11,
+    "MAX_WHEEL_VELOCITY": 0.2 / 0.016,
+    "ROBOT_DIAMETER": 0.11,
+    "WHEEL_RADIUS": 0.016,
+    "BASE_LENGTH": 0.11,
+    "COLLISION_DIAMETER": 0.135,
+    "COLLISION_OFFSET": 0.025,
+    "BOUNDARIES": [-1.6, 1.6, -1.0, 1.0],
+    "CENTER_OFFSET": 0.01,
+    "DISTANCE_SENSOR_ERROR": 0.03,
+    "DISTANCE_SENSOR_DROPOUT_PROB": 0.035,
+    "DISTANCE_SENSOR_OUTLIER_PROB": 0.014,
+    "DISTANCE_SENSOR_RANGE": 1.2,
+    "DISTANCE_SENSORS_ORIENTATION": [
+        [-0.04, 0.0, 0.04, 0.05, 0.04, 0.0, -0.04],
+        [0.04, 0.06, 0.05, 0.0, -0.05, -0.06, -0.04],
+        [pi, pi / 2.0, pi / 4.0, 0.0, -pi / 4.0, -pi / 2.0, -pi],
+    ],
+    "ENCODER_COUNTS_PER_REVOLUTION": 28,
+    "MOTOR_GEAR_RATIO": 100.37,
+    "ENCODER_NOISE_STD": 0.25,
+    "IMU_ORIENTATION": [0.0594 - 0.00319, 0.0344628 - 0.0475, 0.0],
+    "ACCELEROMETER_NOISE_STDS": [0.012929, 0.012127, 0.052979],
+    "GYRO_NOISE_STDS": [0.001663, 0.001216, 0.002372],
+    "MAGNETOMETER_NOISE_STDS": [3.275843, 2.365798, 5.232685],
+    "MAGNETOMETER_Z_AVG": -39.8594,
+    "MAGNETOMETER_XY_AVG": 6.0712,
+    "ORIENTATION_NOISE_STD": 0.310830,
+}
+
+
+@pytest.mark.parametrize("name", CONSTANTS)
+def test_a_constant_is_that_of_the_public_simulator(name: str) -> None:
+    np.testing.assert_allclose(getattr(constants, name), np.array(CONSTANTS[name], dtype=float), rtol=1e-12)
