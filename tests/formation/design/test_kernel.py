@@ -193,6 +193,20 @@ def test_of_the_leaders_with_the_best_rate_those_of_the_least_depth_are_best(see
     assert found[1].depth.tolist() == expected.depth.tolist()
 
 
+def test_the_deepest_agent_counts_before_the_mean_depth() -> None:
+    """Of two pairs of leaders with the same rate and mean the one with the smaller rows is deeper here."""
+    rng = np.random.default_rng(272)
+    places = np.array([[x, y] for x in range(4) for y in range(3)], dtype=float)[rng.permutation(12)[:8]]
+    field = Field(places, (rng.uniform(size=(8, 8)) < 0.75) & ~np.eye(8, dtype=bool))
+    found = best_leaders(field, needs_edge=False)
+    assert found is not None
+    other = shallow(field, (0, 4), found[0] - 1e-9)
+    assert other.whole
+    assert other.depth.sum() == found[1].depth.sum()
+    assert other.depth.max() > found[1].depth.max()
+    assert found[1].leaders > other.leaders
+
+
 @given(seed=SEEDS, radius=st.floats(0.05, 0.5), reach=st.floats(0.3, 3.0))
 def test_an_edge_is_in_sight_where_no_disc_is_on_its_line_and_within_reach_where_it_is_short(
     seed: int, radius: float, reach: float
