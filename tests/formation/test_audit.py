@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from formation import LAWS, AngleLaw, SensingGraph, TargetFormation, random_target
 from formation.audit import Finding, Subject, audit
+from formation.graph.designs import design
 
 Real = np.ndarray
 
@@ -272,3 +273,50 @@ def test_velocities_that_differ_by_a_billionth_of_the_greatest_speed_are_the_sam
 def test_a_law_that_never_moves_anybody_reads_nothing_of_others_and_uses_nothing() -> None:
     found = findings(Bent(lambda u, relative, _: 0.0 * np.nan_to_num(u)))
     assert failed(found) == {"measurements", "zero modes", "local stability"}
+
+
+# What is measured
+
+
+def test_the_figure_of_a_check_is_of_the_agent_that_fares_worst() -> None:
+    def pushed(u: Real, _: Real, __: Real) -> Real:
+        u[3] += [0.0, 0.02]
+        return u
+
+    at_rest = findings(Bent(pushed))["rest at the target"]
+    assert at_rest.measured == pytest.approx(0.02)
+    assert at_rest.remark == "not for agent 4, edges (4, 2) (4, 3)"
+    assert findings(Bent(flat))["local stability"].measured == 0.0
+    leaning = findings(Bent(frame_dependent))["local frames"].measured
+    assert leaning is not None
+    assert 0.05 < leaning <= 1.0  # a share of the greatest speed
+    mirrored = findings(Bent(lambda u, relative, _: u))["mirrored frames"]
+    assert (mirrored.holds, mirrored.remark) == (None, "a common sense of rotation is needed")
+    assert mirrored.measured is not None
+    assert mirrored.measured > 0.1
+
+
+def test_what_is_declared_otherwise_is_told_and_what_is_no_cascade_has_no_owner() -> None:
+    class Declared(Bent):
+        """A law with a word about mirrored frames."""
+
+        needs_handedness = False
+
+    assert findings(Declared(lambda u, _, __: u))["mirrored frames"].remark.endswith("is needed, declared otherwise")
+    Declared.needs_handedness = True
+    assert findings(Declared(lambda u, _, __: u))["mirrored frames"].remark.endswith("is needed, as declared")
+    undirected = design("undirected", TARGET)
+    found = audit(Subject(LAWS["displacement-undirected"](undirected), undirected), PERIOD)  # type: ignore[call-arg,arg-type]
+    stability = {finding.check: finding for finding in found}["local stability"]
+    assert (stability.holds, stability.remark) == (True, "the slowest decay")
+
+
+@pytest.mark.parametrize("moves", [np.greater, np.less])
+def test_a_scale_is_free_only_if_larger_and_smaller_copies_rest(moves: Callable[[float, float], bool]) -> None:
+    def bend(u: Real, relative: Real, _: Real) -> Real:
+        size = np.hypot(*relative.T).sum()
+        away = size - np.hypot(*Subject(AngleLaw(TARGET), TARGET).measure(TARGET.positions)[0][0].T).sum()
+        return u + (0.1 * away if moves(away, 0.0) else 0.0)
+
+    assert findings(Bent(lambda u, _, __: u))["what it fixes"].remark == "shape; free: position, orientation, scale"
+    assert findings(Bent(bend))["what it fixes"].remark == "shape and scale; free: position, orientation"
