@@ -105,8 +105,6 @@ def cli(
 ) -> Callable[..., tuple[int, str, str]]:
     """Runs the command line in this process, in an empty folder: exit code, stdout, stderr."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv("COLUMNS", raising=False)  # test runners in parallel set it for their own terminal
-
     monkeypatch.setattr("scenarios.terminal.SAID_EVERY", math.inf)  # how often it is said tells how busy a machine is
 
     def run(*arguments: str) -> tuple[int, str, str]:
@@ -179,6 +177,7 @@ def pytest_configure(config: pytest.Config) -> None:
     """
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    os.environ.pop("COLUMNS", None)  # whoever starts it may export the width of a terminal of its own: readline does
     found = {name: shutil.which(name) for name in SHELL}
     tools = config.stash[TOOLS] = tempfile.TemporaryDirectory(prefix="tools-")
     for name, program in found.items():
