@@ -75,6 +75,11 @@ def start(arguments: Sequence[str], folder: Path) -> subprocess.Popen[str]:
     )
 
 
+def complained(err: str) -> str:
+    """What a command says on stderr but for how far it is, which tells how busy a machine is."""
+    return "\n".join(line for line in err.splitlines() if line != ANNOUNCEMENT and not line.endswith(" s left"))
+
+
 def whole(arguments: Sequence[str], folder: Path) -> float:
     """Run a command to its end; the seconds that it takes.
 
@@ -83,7 +88,7 @@ def whole(arguments: Sequence[str], folder: Path) -> float:
     """
     begin = time.monotonic()
     process = start(arguments, folder)
-    err = process.communicate()[1].removeprefix(f"{ANNOUNCEMENT}\n")
+    err = complained(process.communicate()[1])
     if process.returncode not in (0, 1) or err:
         raise RuntimeError(f"{arguments}: {process.returncode}: {err}")
     return time.monotonic() - begin

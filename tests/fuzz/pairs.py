@@ -16,7 +16,7 @@ from PIL import Image
 
 from scenarios.storage import run_folder
 from scenarios.studies.check import baseline
-from tests.fuzz.kills import SCENARIO, start, whole
+from tests.fuzz.kills import SCENARIO, complained, start, whole
 
 RUN = ("run", "./three.toml", "--no-recording", "--out", "run")
 
@@ -64,7 +64,9 @@ def main() -> int:
         whole(RUN, folder)
         whole(("check", "./three.toml", "--update", "--baselines", "base", "--workers", "1"), folder)
         for key, (arguments, read) in COMMANDS.items():
-            ended = [(p.communicate()[1].strip(), p.returncode) for p in [start(arguments, folder) for _ in range(2)]]
+            ended = [
+                (complained(p.communicate()[1]), p.returncode) for p in [start(arguments, folder) for _ in range(2)]
+            ]
             refused = [(err, code) for err, code in ended if code == 2]
             found = [f"{code}: {err}" for err, code in ended if code not in (0, 1, 2) or err.count("\n")]
             found += ["both are refused"] if len(refused) == 2 else []

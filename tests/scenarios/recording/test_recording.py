@@ -569,7 +569,7 @@ def test_a_recording_that_cannot_be_made_costs_nothing_else(tmp_path: Path, monk
 
 def test_a_child_encodes_what_the_process_itself_would(tmp_path: Path) -> None:
     assert "recording" not in run_with("", tmp_path / "child")
-    assert "recording" not in run_with("import rerun", tmp_path / "itself")
+    run_to_folder(open_experiment("shape", (), 1.0), 0, tmp_path / "itself", Console(quiet=True))  # rerun is loaded
     sizes = [(tmp_path / name / run_folder.RECORDING).stat().st_size for name in ("child", "itself")]
     assert sizes[0] == pytest.approx(sizes[1], rel=0.01)  # the time of writing is in it
     assert damage(tmp_path / "child" / run_folder.RECORDING) is None
