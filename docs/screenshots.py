@@ -33,14 +33,8 @@ from scenarios.storage import run_folder
 SIZE = (1400, 800)
 IMAGES = Path(__file__).parent / "images"
 
-PICTURES = {
-    "shape": {"start": 0.0, "middle": 5.0, "end": 60.0},
-    "maneuver": {"start": 0.0, "middle": 60.0, "end": 120.0},
-    "pair": {"middle": 55.0},
-    "obstacles": {"middle": 5.0},
-    "crowd": {"middle": 20.0},
-}
-"""Recordings, and the times at which each has its picture taken, seconds."""
+PICTURES = {"shape": 5.0, "maneuver": 60.0, "pair": 55.0, "obstacles": 5.0, "crowd": 20.0}
+"""Recordings, and the times at which each has its picture taken in the middle of the run, seconds."""
 
 PAINTED = 2.0
 """Seconds that a viewer without a graphics card takes to draw a frame that has settled."""
@@ -49,8 +43,11 @@ BROWSER = 25.0
 """Seconds that a browser without a graphics card takes to load the viewer and a recording."""
 
 
-TIME_BAR, TIME_BAR_Y = (296.0, 1191.0), 785.0
-"""Where the time bar begins and ends, and its height, pixels."""
+MIDDLE, EARLY, NEAR, LEGEND, WALLS = (743.0, 785.0), (350.0, 785.0), (185.0, 51.0), (480.0, 527.0), (650.0, 527.0)
+"""Places in a window of that size, pixels: two on the time bar, and titles of views that lie behind others."""
+
+BROWSED = {"maneuver": [MIDDLE, NEAR, LEGEND], "obstacles": [EARLY, NEAR, WALLS]}
+"""Recordings in the browser, and what is clicked on before each has its picture taken."""
 
 
 def main() -> None:
@@ -61,13 +58,12 @@ def main() -> None:
         for name, path in recordings(folder).items():
             with viewer(path, environment) as port:
                 client = ViewerClient.connect(f"rerun+http://{LOOPBACK}:{port}/proxy")
-                for moment, seconds in PICTURES[name].items():
-                    client.set_time(TIMELINE, duration=seconds, play_state="paused")
-                    time.sleep(PAINTED)
-                    picture = folder / "picture.png"
-                    client.save_screenshot(str(picture))
-                    keep(picture, f"recording-{name}-{moment}.png")
-            if name in ("shape", "maneuver"):
+                client.set_time(TIMELINE, duration=PICTURES[name], play_state="paused")
+                time.sleep(PAINTED)
+                picture = folder / "picture.png"
+                client.save_screenshot(str(picture))
+                keep(picture, f"recording-{name}-middle.png")
+            if name in BROWSED:
                 browse(name, path, folder, environment)
 
 
@@ -98,7 +94,7 @@ def viewer(path: Path, environment: dict[str, str]) -> Iterator[int]:
 
 
 def browse(run: str, path: Path, folder: Path, environment: dict[str, str]) -> None:
-    """Take the web viewer's pictures at the start, in the middle and at the end, by clicks on its time bar."""
+    """Take the web viewer's picture after clicks on its time bar and on titles of views."""
     port, web = free_port(), free_port()
     command = [executable(), str(path), "--serve-web", "--bind", LOOPBACK]
     command += ["--port", str(port), "--web-viewer-port", str(web)]
@@ -107,14 +103,14 @@ def browse(run: str, path: Path, folder: Path, environment: dict[str, str]) -> N
             "Page.navigate", url=f"http://{LOOPBACK}:{web}/?url=rerun%2Bhttp%3A%2F%2F{LOOPBACK}%3A{port}%2Fproxy"
         )
         time.sleep(BROWSER)
-        for name, x in (("start", TIME_BAR[0]), ("middle", sum(TIME_BAR) / 2.0), ("end", TIME_BAR[1])):
+        for x, y in BROWSED[run]:
             for kind in ("mouseMoved", "mousePressed", "mouseReleased"):
                 button = {"button": "none"} if kind == "mouseMoved" else {"button": "left", "clickCount": 1}
-                browser.call("Input.dispatchMouseEvent", type=kind, x=x, y=TIME_BAR_Y, **button)
+                browser.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **button)
                 time.sleep(PAINTED)
-            picture = folder / "web.png"
-            picture.write_bytes(base64.b64decode(browser.call("Page.captureScreenshot")["data"]))
-            keep(picture, f"recording-web-{run}-{name}.png")
+        picture = folder / "web.png"
+        picture.write_bytes(base64.b64decode(browser.call("Page.captureScreenshot")["data"]))
+        keep(picture, f"recording-web-{run}-near.png")
 
 
 class Browser:

@@ -11,6 +11,10 @@ class InputError(ValueError):
     """Input that cannot be used. Its message is one line: file, field, value and what was expected."""
 
 
+MOST_LISTED = 24
+"""Known names that a message lists."""
+
+
 def did_you_mean(name: str, known: Iterable[str], where: str | None = None) -> str:
     """A clause that offers the nearest known name, or lists the known ones, or says where so many are listed.
 
@@ -21,7 +25,8 @@ def did_you_mean(name: str, known: Iterable[str], where: str | None = None) -> s
     """
     options = list(known)
     close = difflib.get_close_matches(name, options, n=1, cutoff=0.6)
-    return f"did you mean {close[0]!r}?" if close else where or f"known: {', '.join(options)}"
+    rest = f" and {len(options) - MOST_LISTED} more" if len(options) > MOST_LISTED else ""
+    return f"did you mean {close[0]!r}?" if close else where or f"known: {', '.join(options[:MOST_LISTED])}{rest}"
 
 
 def plain(text: str) -> str:

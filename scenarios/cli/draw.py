@@ -15,8 +15,17 @@ if TYPE_CHECKING:
     from scenarios.documents import Sheet
 
 
+TABLES = {
+    "markdown": (".md", ".markdown", ".txt"),
+    "latex": (".tex",),
+    "csv": (".csv", ".txt"),
+    "parquet": (".parquet",),
+}
+"""Endings of the names of files that a table may replace, by its format."""
+
+
 @click.command()
-@options.run_folder
+@options.run_or_sweep
 @options.out("Folder of the figures.  [default: RUN]")
 @click.option(
     "--format", "formats", multiple=True, type=click.Choice(["png", "pdf", "svg"]), default=("png", "pdf"),
@@ -97,7 +106,7 @@ def animate(
 @click.command()
 @click.argument(
     "folders", nargs=-1, required=True, metavar="RUN [RUN]|SWEEP", type=click.Path(path_type=Path),
-    shell_complete=options.complete_run,
+    shell_complete=options.complete_run_or_sweep,
 )  # fmt: skip
 @click.option(
     "--format",
@@ -120,6 +129,10 @@ def table(folders: tuple[Path, ...], form: str, series: bool, columns: str | Non
 
     if form == "parquet" and out is None:
         raise InputError("--format parquet: needs --out, a terminal cannot show it")
+    if out is not None and out.is_file() and out.suffix not in TABLES[form]:
+        raise InputError(
+            f"--out {out}: is there already, and by its name no table: expected {' or '.join(TABLES[form])}"
+        )
     sheet = _sheet(folders, series)
     if columns is not None:
         sheet = sheet.with_columns(_columns(columns, sheet))

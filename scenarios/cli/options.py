@@ -39,6 +39,12 @@ def _plants() -> Iterator[str]:
     yield from get_args(PlantTable.model_fields["name"].annotation)
 
 
+def _filters() -> Iterator[str]:
+    from scenarios.definition.schema import SafetyTable
+
+    yield from get_args(SafetyTable.model_fields["filter"].annotation)
+
+
 def _keys() -> Iterator[str]:
     from scenarios.definition.keys import keys
 
@@ -49,17 +55,38 @@ def _runs() -> Iterator[str]:
     """The finished runs below ``runs``, newest first."""
     from scenarios.storage.run_folder import RESULT
 
-    results = sorted(Path("runs").glob(f"*/{RESULT}"), key=lambda path: path.stat().st_mtime, reverse=True)
-    yield from (str(path.parent) for path in results)
+    yield from _folders_with(RESULT)
+
+
+def _sweeps() -> Iterator[str]:
+    """The finished sweeps below ``runs``, newest first."""
+    from scenarios.studies.sweep.folder import SUMMARY
+
+    yield from _folders_with(SUMMARY)
+
+
+def _runs_and_sweeps() -> Iterator[str]:
+    yield from _runs()
+    yield from _sweeps()
+
+
+def _folders_with(name: str) -> Iterator[str]:
+    found = sorted(Path("runs").glob(f"*/{name}"), key=lambda path: path.stat().st_mtime, reverse=True)
+    yield from (str(path.parent) for path in found)
 
 
 complete_scenario = completed(_library, "file")
 complete_run = completed(_runs, "dir")
+complete_run_or_sweep = completed(_runs_and_sweeps, "dir")
 complete_plant = completed(_plants)
+complete_filter = completed(_filters)
 complete_key = completed(_keys)
 
 scenario = click.argument("scenario", shell_complete=complete_scenario)
 run_folder = click.argument("run_folder", metavar="RUN", type=click.Path(path_type=Path), shell_complete=complete_run)
+run_or_sweep = click.argument(
+    "run_folder", metavar="RUN|SWEEP", type=click.Path(path_type=Path), shell_complete=complete_run_or_sweep
+)
 changes = click.option(
     "--set", "changes", multiple=True, metavar="KEY=VALUE", help="Change a key of the scenario.",
     shell_complete=complete_key,
@@ -80,7 +107,7 @@ def seed(of: str) -> Option:
 
 def safety(filters: str) -> Option:
     """The safety filter, in place of the scenario's; ``filters`` says which there are."""
-    return click.option("--safety", metavar="F", help=filters)
+    return click.option("--safety", metavar="F", help=filters, shell_complete=complete_filter)
 
 
 def out(what: str) -> Option:

@@ -82,7 +82,11 @@ def load(scenario: str, changes: Sequence[str] = ()) -> ScenarioFile:
     try:
         text = read_regular(path).decode("utf-8-sig")  # some editors begin a file with a byte-order mark
     except FileNotFoundError as error:
-        raise InputError(f"{scenario}: no such scenario file") from error
+        others = sorted(each.name for each in path.parent.glob("*.toml"))
+        hint = did_you_mean(path.name, others, "formation list shows the library's")
+        raise InputError(f"{scenario}: no such scenario file, {hint}") from error
+    except IsADirectoryError as error:
+        raise InputError(f"{scenario}: a folder, expected a scenario's name or file") from error
     except OSError as error:
         raise InputError(f"{scenario}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:

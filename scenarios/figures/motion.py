@@ -187,7 +187,7 @@ def rows_at(trajectory: Trajectory, at: Sequence[float]) -> list[int]:
     t = trajectory.t[np.isfinite(trajectory.poses).all(axis=(1, 2))]
     for time in at:
         if not 0.0 <= time <= t[-1] + SAME_TIME:
-            raise InputError(f"at: expected seconds of the run, 0 to {t[-1]:g}, got {time:g}")
+            raise InputError(f"--at: expected seconds of the run, 0 to {t[-1]:g}, got {time:g}")
     return sorted({int(np.abs(t - time).argmin()) for time in at})
 
 

@@ -150,7 +150,8 @@ def _family(font: str) -> str:
 
     known = get_font_names()
     if font not in known:
-        raise InputError(f"--font {font[:40]!r}: {did_you_mean(font, [*FAMILIES, *known])}")
+        hint = did_you_mean(font, [*FAMILIES, *known], "expected serif, sans or a family that matplotlib finds")
+        raise InputError(f"--font {font[:40]!r}: {hint}")
     return font
 
 

@@ -34,6 +34,8 @@ def open_again(source: str, changes: tuple[str, ...], duration: float | None) ->
     """
     path = Path(source)
     folder = path.parent if path.name == run_folder.SCENARIO else path
+    if not (folder / run_folder.RESULT).is_file():
+        raise InputError(f"{source}: neither a scenario nor a run folder, it holds no {run_folder.RESULT}")
     file, result = run_folder.read_recipe(folder)
     if changes:
         file = _changed(folder, file, changes)

@@ -60,7 +60,7 @@ def page(found: Identified, source: str, ladders: Sequence[Ladder], command: str
         "",
         "## What the measured robot has",
         "",
-        f"The {len(NAMES)} numbers above, and:",
+        f"The first {len(NAMES)} numbers above, and:",
         "",
         *constants(),
         "",

@@ -65,7 +65,7 @@ def arcs(recorder: Recorder, piece: Piece) -> None:
     places = np.stack([points[:, vertex] + far * np.stack([np.cos(way), np.sin(way)], axis=-1) for way in ways])
     places, shown = apart(places, points, _sizes(experiment, scene.near(experiment, piece.trajectory.points)))
     words = [f"{value:.0f}° ({error:+z.1f})" for value, error in np.degrees([measured[shown], errors[shown]]).T]
-    colours = np.array([style.agent_colour(row) for row in vertex], dtype=np.uint8)[np.nonzero(shown)[1]]
+    colours = np.array([style.pale(style.agent_colour(row)) for row in vertex], dtype=np.uint8)[np.nonzero(shown)[1]]
     columns = rr.Points2D.columns(positions=places[shown], labels=words, colors=colours)
     recorder.columns(WORDS, t, columns.partition(shown.sum(axis=1)))
 

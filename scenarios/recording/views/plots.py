@@ -34,6 +34,9 @@ MOST_IN_LEGEND = 4
 LEGEND_SHARE, LEGEND_STATES = (0.42, 0.5), 120
 """Width and height of a legend over its plot's, and states of a run from which it sees where curves are."""
 
+LEVEL = 0.3
+"""What a level stretch of a curve tells over what an upright one of the same length does."""
+
 SMALLEST = 1e-16
 """Radians or metres; what is smaller is drawn here, as its logarithm may not exist."""
 
@@ -154,7 +157,8 @@ def corners(experiment: Experiment, points: Real, span: dict[str, tuple[float, f
         known = np.append(values, others)
         low, high = span.get(entity, (known.min(), known.max()))
         y = (values.reshape(len(x), values.size // len(x)).T - low) / max(high - low, SMALLEST)
-        found[entity] = min((first, *CORNERS), key=lambda corner: np.count_nonzero(_hidden(corner, x, y)))
+        told = LEVEL * np.diff(x, prepend=0.0) + np.abs(np.diff(y, prepend=y[:, :1]))
+        found[entity] = min((first, *CORNERS), key=lambda corner: float(told[_hidden(corner, x, y)].sum()))
     if len(experiment.angles) <= MOST_IN_LEGEND:
         found[ANGLES] = rrb.Corner2D.RightTop
     return found

@@ -70,6 +70,12 @@ def agent_colour(row: int) -> Colour:
     return AGENTS[row % len(AGENTS)]
 
 
+def pale(colour: Colour) -> Colour:
+    """The colour nearly white, for words on black and on grey."""
+    red, green, blue = (round(255 - 0.45 * (255 - channel)) for channel in colour)
+    return red, green, blue
+
+
 def tint(colour: Colour, share: float) -> Colour:
     """The colour at ``share`` of its brightness, as a paint on the dark floor."""
     red, green, blue = (round(share * channel) for channel in colour)

@@ -157,7 +157,7 @@ def read(path: Path) -> Baseline:
     try:
         content = json.loads(read_regular(path))
     except FileNotFoundError as error:
-        known = [found.stem for found in path.parent.glob("*.json")] or library()
+        known = sorted(found.stem for found in path.parent.glob("*.json")) or library()
         hint = did_you_mean(path.stem, known)
         raise InputError(f"{path}: no such baseline, `formation check --update` makes one; {hint}") from error
     except OSError as error:

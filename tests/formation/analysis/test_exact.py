@@ -196,6 +196,13 @@ def test_a_turning_displacement_shrinks_and_twists_the_shape_as_predicted(seed: 
     np.testing.assert_allclose(lags.turning_gains(target, 1e-9), lags.shares(target), atol=1e-6)
 
 
+def test_in_the_papers_shape_a_turn_of_a_fifth_of_a_radian_a_second_leaves_27_percent(paper: TargetFormation) -> None:
+    places, settled = lags.shares(paper), lags.turning_gains(paper, 0.2)
+    wanted, found = places - places.mean(), settled - settled.mean()
+    similar = np.vdot(wanted, found) / np.vdot(wanted, wanted) * wanted
+    assert np.linalg.norm(found - similar) / np.linalg.norm(found) == pytest.approx(0.27, abs=0.001)
+
+
 def test_behind_a_ramped_velocity_spread_by_consensus_the_agents_lag_as_predicted() -> None:
     target = random_target(6, np.random.default_rng(2), min_angle=np.radians(30.0))
     edges, kappa, slope, h = target.graph.edges, 2.0, np.array([0.003, -0.001]), 0.01

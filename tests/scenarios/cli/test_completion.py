@@ -9,6 +9,7 @@ import pytest
 from click.shell_completion import ShellComplete
 
 from robots import PLANTS
+from robots.safety import FILTERS
 from scenarios.cli.main import cli
 from scenarios.definition.keys import keys
 from scenarios.definition.load import library
@@ -25,8 +26,9 @@ def test_every_command_that_takes_a_scenario_offers_the_library(command: str) ->
     assert offered(command, "") == library()
 
 
-def test_plants_and_keys_are_offered_where_they_may_stand() -> None:
+def test_plants_filters_and_keys_are_offered_where_they_may_stand() -> None:
     assert offered("run", "--plant", "") == list(PLANTS)
+    assert offered("run", "--safety", "") == list(FILTERS)
     names = {key.name for key in keys()}
     for option in ("--set", "--vary"):
         found = [text.removesuffix("=") for text in offered("sweep", option, "sensor.")]
@@ -43,6 +45,16 @@ def test_finished_runs_are_offered_and_nothing_else(
     (tmp_path / "runs" / "mine").mkdir()
     (tmp_path / "runs" / "mine" / "result.json").touch()
     assert offered(command, "") == ["runs/mine"]
+
+
+@pytest.mark.parametrize(("command", "more"), [("plot", True), ("table", True), ("animate", False)])
+def test_sweeps_are_offered_where_they_may_stand(
+    command: str, more: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "runs" / "sweep").mkdir(parents=True)
+    (tmp_path / "runs" / "sweep" / "summary.json").touch()
+    assert ("runs/sweep" in offered(command, "")) == more
 
 
 def test_the_shell_asks_the_command_itself_and_waits_for_no_numpy(tmp_path: Path) -> None:

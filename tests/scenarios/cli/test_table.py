@@ -136,3 +136,15 @@ def test_a_column_of_an_angle_is_named_with_its_comma_and_a_misspelt_one_is_told
     assert code == 0
     assert out.splitlines()[0] == 't_s,"alpha(1;2,3).error_rad",x_1_m'
     assert cli(*arguments, "x_1_n")[::2] == (2, "formation: --columns: no column 'x_1_n', did you mean 'x_1_m'?\n")
+
+
+def test_a_table_replaces_a_table_and_nothing_else(cli: Cli, runs: Path, tmp_path: Path) -> None:
+    mine, table = tmp_path / "mine.toml", tmp_path / "t.csv"
+    for path in (mine, table):
+        path.write_text("of value", encoding="utf-8")
+    arguments = ("table", str(runs / "saturated"), "--format", "csv", "--out")
+    assert cli(*arguments, str(table))[0] == 0
+    assert table.read_text(encoding="utf-8") != "of value"
+    code, _, err = cli(*arguments, str(mine))
+    assert (code, err.count("\n"), mine.read_text(encoding="utf-8")) == (2, 1, "of value")
+    assert "mine.toml: is there already, and by its name no table: expected .csv or .txt" in err

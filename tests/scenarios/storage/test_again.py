@@ -105,8 +105,8 @@ def test_what_cannot_be_run_again_or_begun_from_is_one_line(cli: Cli, tmp_path: 
     cli("run", "shape", *QUICK, "--set", "robot.projection_distance_m=1e-6", "--plant", "unicycle", "--out", "other")
     (tmp_path / "empty").mkdir()
     for arguments, words in {
-        ("empty",): "empty/result.json: cannot be read: No such file or directory",
-        ("./none/scenario.json",): "none/result.json: cannot be read",
+        ("empty",): "empty: neither a scenario nor a run folder, it holds no result.json",
+        ("./none/scenario.json",): "./none/scenario.json: neither a scenario nor a run folder",
         ("first", "--set", "plnt.name=x"): "first/scenario.json: plnt: unknown key, did you mean 'plant'?",
         ("first", "--set", "law.name=own"): "law.file: missing",
         ("random-50", "--start-from", "first"): "--start-from first: that run has 6 agents, expected 50 as random-50",
