@@ -26,12 +26,13 @@ def full(*arguments, **named): raise OSError(28, "No space left on device")
 tempfile.NamedTemporaryFile = full
 from robots.safety import solver
 from robots.worlds import bodies, chipmunk
+import numpy as np
 import pymunk
 space = pymunk.Space()
 space.add(pymunk.Body(1.0, 1.0))
 seen, alive = chipmunk.bodies_of(space, space.bodies)
-print(at_hand(solver.project), solver.within_wheels(0.3, 0.0, 0.0, 0.0, 0.2, 2.2))
-chipmunk.observe(seen)
+print(at_hand(bodies.move), solver.within_wheels(0.3, 0.0, 0.0, 0.0, 0.2, 2.2))
+bodies.move(bodies.Chassis(seen, np.zeros(0), 4, np.zeros((0, 2))), 0.033)
 print(seen.state[0].tolist())
 """
 

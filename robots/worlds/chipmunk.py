@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.compiled import compiled, intrinsic, program
+from robots.compiled import compiled, intrinsic
 from robots.compiled.memory import ARRAY, AT
 from robots.worlds.protocol import NOTHING, UnsupportedVersionError
 
@@ -87,11 +87,13 @@ def no_bodies() -> Bodies:
 
 
 def bodies_of(space: pymunk.Space, watched: Sequence[pymunk.Body]) -> tuple[Bodies, list[Any]]:
-    """The bodies of a space, those watched first, and what must live as long as they are used.
+    """The bodies of a space, those watched first, as they are, and what must live as long as they are used.
 
     Raises:
         UnsupportedVersionError: this version of pymunk lacks what is needed; the message says what.
     """
+    from pymunk import batch
+
     ffi, lib = _library()
 
     def address(name: str) -> int:
@@ -99,6 +101,9 @@ def bodies_of(space: pymunk.Space, watched: Sequence[pymunk.Body]) -> tuple[Bodi
 
     count = len(space.bodies) + 1  # the static body of walls and obstacles is visited too, last
     state, command = np.zeros((count, 6)), np.zeros((count, 3))
+    fields, seen = batch.BodyFields, batch.Buffer()
+    batch.get_space_bodies(space, fields.POSITION | fields.ANGLE | fields.VELOCITY | fields.ANGULAR_VELOCITY, seen)
+    state.ravel()[:] = np.frombuffer(seen.float_buf())
     written = ffi.new("pmFloatArray *", {"num": 0, "max": command.size})
     written.arr = ffi.cast("cpFloat *", command.ctypes.data)
     found = ffi.gc(lib.pmFloatArrayNew(state.size), lib.pmFloatArrayFree)
@@ -110,8 +115,8 @@ def bodies_of(space: pymunk.Space, watched: Sequence[pymunk.Body]) -> tuple[Bodi
         (found, lib.BODY_A_ID | lib.BODY_B_ID),
     )
     given = [
-        ffi.new("pmBatchedData *", {"intArray": touching, "floatArray": reals, "fields": fields})
-        for reals, fields in asked
+        ffi.new("pmBatchedData *", {"intArray": touching, "floatArray": reals, "fields": chosen})
+        for reals, chosen in asked
     ]
 
     def field(array: Any, name: str, kind: type[np.integer[Any]]) -> NDArray[Any]:
@@ -147,7 +152,7 @@ def _library() -> tuple[Any, Any]:
     return ffi, lib
 
 
-@program
+@compiled
 def observe(bodies: Bodies) -> None:
     """Read the state of all bodies, and whom those that are watched touch."""
     bodies.read_count[0] = bodies.touch_count[0] = 0

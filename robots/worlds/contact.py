@@ -24,7 +24,7 @@ from robots.model import Chassis as Box
 from robots.model import RobotModel
 from robots.nid import NearIdentityDiffeomorphism, mapped
 from robots.worlds.bodies import Chassis, move
-from robots.worlds.chipmunk import BODY_ANGLE, bodies_of, observe
+from robots.worlds.chipmunk import BODY_ANGLE, bodies_of
 from robots.worlds.protocol import Controller, Index, Real
 
 SUBSTEPS = 4
@@ -70,7 +70,6 @@ class Contact:
         self.bodies, self._kept = bodies_of(self.space, list(self.space.bodies)[:n])
         ahead = np.array([each.centre_offset for each in chassis])
         self.chassis = Chassis(self.bodies, ahead, substeps, np.zeros((n, 2)))
-        observe(self.bodies)
         self._observe()
 
     @property

@@ -44,6 +44,15 @@ def publicly(world: Contact, command: np.ndarray) -> tuple[np.ndarray, list[int]
     return np.frombuffer(states.float_buf()).reshape(-1, 6).copy(), touched
 
 
+def test_bodies_are_known_before_the_first_step() -> None:
+    world = crowd(0, 12)
+    known, touched = world.bodies.state.copy(), world.bodies.touched.copy()
+    assert (np.ptp(known[:12, :2], axis=0) > 0.1).all()
+    chipmunk.observe(world.bodies)
+    np.testing.assert_array_equal(world.bodies.state, known)
+    np.testing.assert_array_equal(world.bodies.touched, touched)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_compiled_steps_are_those_of_the_public_way_bit_for_bit(seed: int) -> None:
     ours, theirs = crowd(seed, 12), crowd(seed, 12)

@@ -63,7 +63,8 @@ def test_a_sweep_and_a_grid_find_the_first_closest_pair_whatever_the_scale(
         if whole:
             assert best == pytest.approx(expected, rel=1e-15)
         if start[0] > 0.0:
-            assert plain(search._grid)(p, rng.permutation(n), start) == pytest.approx(expected, rel=1e-15)
+            first, after = np.empty(128, dtype=int), np.empty(n, dtype=int)
+            assert plain(search._grid)(p, rng.permutation(n), start, first, after) == pytest.approx(expected, rel=1e-15)
 
 
 def test_a_sweep_gives_way_after_sixteen_comparisons_a_point(plain: Plain) -> None:
@@ -78,7 +79,7 @@ def test_a_sweep_gives_way_after_sixteen_comparisons_a_point(plain: Plain) -> No
 def test_of_equal_points_the_first_pair_in_the_order_of_rows_is_found(plain: Plain, seed: int, n: int) -> None:
     p = np.random.default_rng(seed).integers(0, 4, (n, 2)).astype(float)
     pairs = [(0.0, i, j) for i, j in combinations(range(n), 2) if (p[i] == p[j]).all()]
-    assert plain(search._coincident)(p) == min(pairs, default=(0.0, n, n))
+    assert plain(search._coincident)(p, np.empty(n, dtype=int)) == min(pairs, default=(0.0, n, n))
 
 
 def test_how_far_points_reach_and_spread_and_which_pair_is_closer(plain: Plain) -> None:
