@@ -103,7 +103,8 @@ def bodies_of(space: pymunk.Space, watched: Sequence[pymunk.Body]) -> tuple[Bodi
     state, command = np.zeros((count, 6)), np.zeros((count, 3))
     fields, seen = batch.BodyFields, batch.Buffer()
     batch.get_space_bodies(space, fields.POSITION | fields.ANGLE | fields.VELOCITY | fields.ANGULAR_VELOCITY, seen)
-    state.ravel()[:] = np.frombuffer(seen.float_buf())
+    known = np.frombuffer(seen.float_buf())  # without the static body, where nothing is on it
+    state.ravel()[: len(known)] = known
     written = ffi.new("pmFloatArray *", {"num": 0, "max": command.size})
     written.arr = ffi.cast("cpFloat *", command.ctypes.data)
     found = ffi.gc(lib.pmFloatArrayNew(state.size), lib.pmFloatArrayFree)
