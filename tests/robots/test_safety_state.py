@@ -58,3 +58,18 @@ def test_a_relaxation_by_rounding_is_no_relaxation(lack: float, told: float) -> 
     x, y, relaxation = solver.project(rows, len(rows), np.empty_like(rows), 0.2, 2.2, 0.0, 0.0)
     assert relaxation == pytest.approx(told, rel=1e-3, abs=1e-15)
     np.testing.assert_allclose([x, y], [0.05 - lack / 2.0, 0.0], atol=1e-9)
+
+
+def test_the_settings_are_those_of_the_documents_unless_they_are_told() -> None:
+    told = FilterSettings(safe_distance=0.155, sensing_range=0.3, clearance=0.08, gain=5.0, turn=0.7, stuck_time=2.0)
+    assert FilterSettings() == told
+    assert told.safe_distance - 0.1487 == pytest.approx(0.0063, abs=1e-4)
+    for name in ("safe_distance", "sensing_range", "clearance", "gain", "stuck_time"):
+        for bad in (0.0, -1.0, np.inf, np.nan):
+            with pytest.raises(ValueError, match=f"{name} must be a positive number"):
+                FilterSettings(**{name: bad})
+    assert FilterSettings(turn=0.0).turn == 0.0
+    with pytest.raises(ValueError, match="turn must be a positive number"):
+        FilterSettings(turn=-0.1)
+    with pytest.raises(ValueError, match=r"sensing_range must be beyond safe_distance 0\.155 m, got 0\.155 m"):
+        FilterSettings(sensing_range=0.155)
