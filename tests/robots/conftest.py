@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 
-def uncompiled(function: Any, made: dict[int, Any] | None = None) -> Any:
-    """The Python form of a compiled function, and of all compiled functions that it calls."""
+def uncompiled(function: Any, kept: tuple[str, ...] = (), made: dict[int, Any] | None = None) -> Any:
+    """The Python form of a compiled function, and of all compiled functions that it calls, but those that are kept."""
     made = {} if made is None else made
     python = getattr(function, "py_func", None)
     if python is None:  # the compiler is switched off
@@ -19,12 +19,12 @@ def uncompiled(function: Any, made: dict[int, Any] | None = None) -> Any:
         made[id(function)] = form
         seen.update(python.__globals__)
         for name in python.__code__.co_names:
-            if hasattr(seen.get(name), "py_func"):
-                seen[name] = uncompiled(seen[name], made)
+            if name not in kept and hasattr(seen.get(name), "py_func"):
+                seen[name] = uncompiled(seen[name], kept, made)
     return made[id(function)]
 
 
 @pytest.fixture(scope="session")
-def plain() -> Callable[[Any], Any]:
+def plain() -> Callable[..., Any]:
     """Makes the Python form of a compiled function: no test of a few calls has to wait for the compiler."""
     return uncompiled

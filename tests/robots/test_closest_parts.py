@@ -13,7 +13,7 @@ from robots import closest_pairs as search
 
 SEEDS = st.integers(0, 2**32 - 1)
 EXAMPLES = settings(max_examples=12)
-Plain = Callable[[Any], Any]
+Plain = Callable[..., Any]
 
 
 def first_closest(p: np.ndarray) -> tuple[float, int, int]:

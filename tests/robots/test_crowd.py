@@ -14,7 +14,7 @@ from robots.safety.joint import things as codes_of_things
 
 SEEDS = st.integers(0, 2**32 - 1)
 EXAMPLES = settings(max_examples=20)
-Plain = Callable[[Any], Any]
+Plain = Callable[..., Any]
 
 
 @EXAMPLES

@@ -11,13 +11,15 @@ from hypothesis import strategies as st
 from robots import GTERNAL, NearIdentityDiffeomorphism
 from robots.drive import Saturation
 from robots.worlds import lanes
+from robots.worlds.bodies import shove
+from robots.worlds.contact import Contact
 from robots.worlds.kinematic import Saturated, Unicycle
 from robots.worlds.lanes import COS, LEFT, PX, PY, RIGHT, SIN, THETA, UX, UY, X, Y, new_state, roll, wheels
 from robots.worlds.protocol import NOTHING
 
 SEEDS = st.integers(0, 2**32 - 1)
 N, RUNS, PERIOD = 3, 2, 0.2
-Plain = Callable[[Any], Any]
+Plain = Callable[..., Any]
 
 
 @pytest.mark.parametrize("saturation", [None, "scale", "clip"])
@@ -88,3 +90,24 @@ def test_a_new_state_shows_its_poses_and_robots_that_touch_nobody_and_turn_left(
     still = lanes.at_rest(N, RUNS)
     assert (still[COS] == 1.0).all()
     assert not still[[X, Y, THETA, SIN, PX, PY]].any()
+
+
+def test_a_lane_of_robots_with_bodies_is_the_world_with_mass(plain: Plain) -> None:
+    """Its loop over robots runs without the compiler here, Chipmunk's own step with it, as in every run."""
+    nid, drive = NearIdentityDiffeomorphism(0.04), GTERNAL.drive
+    poses = np.array([[0.0, 0.0, 0.3], [0.16, 0.02, 3.0], [-0.5, 0.4, -1.0]])
+    world, other = Contact(poses, nid, GTERNAL, "scale"), Contact(poses, nid, GTERNAL, "scale")
+    state, constants = new_state(poses[None], 0.04), wheels(drive, nid, "scale", N)
+    rng, touched = np.random.default_rng(1), False
+    for _ in range(30):
+        commands = rng.normal(0.0, 0.05, (N, 2)) + [0.15, 0.0]
+        state[UX, :, 0], state[UY, :, 0] = commands.T
+        plain(shove, ("move",))(state, constants, other.chassis, PERIOD)
+        world.step(lambda points, headings, _, commands=commands: commands, PERIOD)
+        np.testing.assert_allclose(state[[X, Y, THETA], :, 0].T, world.poses, atol=1e-9)
+        np.testing.assert_allclose(state[[LEFT, RIGHT], :, 0].T, world.wheel_speeds, atol=1e-9)
+        np.testing.assert_allclose(state[[PX, PY], :, 0].T, world.points, atol=1e-9)
+        np.testing.assert_allclose(state[[COS, SIN], :, 0].T, world.headings, atol=1e-9)
+        assert state[lanes.CONTACT, :, 0].tolist() == world.contacts.tolist()
+        touched |= bool((world.contacts != NOTHING).any())
+    assert touched
