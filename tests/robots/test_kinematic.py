@@ -100,3 +100,30 @@ def test_headings_count_whole_turns() -> None:
     for _ in range(20):
         world.step(spin, 1.0)
     assert world.poses[0, 2] == pytest.approx(20.0)
+
+
+@pytest.mark.parametrize("steps", [1, 3])
+def test_a_point_that_is_steered_by_time_alone_goes_its_integral(steps: int) -> None:
+    """Of a cubic of time a fourth-order step is exact; time runs on through the steps of a period."""
+    world = SingleIntegrator(np.array([[0.5, -0.5]]), np.array([0.7]), steps)
+    turn = np.exp(-0.7j)
+
+    def velocity(points: np.ndarray, headings: np.ndarray, elapsed: float) -> np.ndarray:
+        told = complex(4.0 * elapsed**3, 3.0 * elapsed**2) * turn
+        return np.array([[told.real, told.imag]])
+
+    world.step(velocity, 1.5)
+    np.testing.assert_allclose(world.points, [[0.5 + 1.5**4, -0.5 + 1.5**3]])
+
+
+@pytest.mark.parametrize("plant", KINEMATIC)
+def test_a_push_moves_a_robot_and_turns_it_not(plant: str) -> None:
+    points, theta = np.array([[0.1, 0.2], [-0.3, 0.4]]), np.array([0.3, -2.0])
+    world = make_world(plant, points, theta, nid=NID, robot=GTERNAL)
+    push = np.array([[0.05, -0.02], [0.0, 0.01]])
+    before = world.poses.copy()
+    world.push(push)
+    np.testing.assert_allclose(world.points, points + push)
+    np.testing.assert_allclose(world.poses[:, :2], before[:, :2] + push)
+    np.testing.assert_array_equal(world.poses[:, 2], before[:, 2])
+    np.testing.assert_allclose(world.headings, np.stack([np.cos(theta), np.sin(theta)], axis=1))

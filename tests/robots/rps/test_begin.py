@@ -100,3 +100,25 @@ def test_poses_and_steps_take_turns() -> None:
     robots.get_poses()
     with pytest.raises(RuntimeError, match="get_poses\\(\\) was called twice"):
         calls[1]()
+
+
+def test_robots_have_no_past_and_read_nothing_before_their_first_step() -> None:
+    robots, _ = begun("exact")
+    assert robots.show_figure is False
+    assert robots.picture is None
+    simulation = robots._simulation
+    assert simulation.steps == 0
+    np.testing.assert_array_equal(simulation.motion, np.zeros((2, 2)))
+    np.testing.assert_array_equal(simulation.turned, np.zeros((2, 2)))
+    record = robots.record()
+    assert record.t.tolist() == [0.0]
+    assert record.poses.shape == (1, 2, 3)
+    assert not record.commands.any()
+    robots.get_poses()
+    robots.set_velocities([0, 1], np.array([[0.1, 0.0], [0.5, -1.0]]))
+    robots.step()
+    np.testing.assert_allclose(simulation.motion, [[0.1, 0.5], [0.0, -1.0]], atol=1e-9)
+    wheels = np.array([[0.1 - 0.055 * 0.5, 0.1 + 0.055 * 0.5], [0.055, -0.055]]) / 0.016
+    np.testing.assert_allclose(simulation.turned, 0.033 * wheels)
+    np.testing.assert_allclose(robots.record().wheel_speeds[1], wheels)
+    np.testing.assert_allclose(robots.record().t, [0.0, 0.033])
