@@ -1,6 +1,7 @@
 """`make mutants`: does a test notice when the theory or the machines are changed?
 
-Of all mutants of ``formation/`` and of ``robots/`` a seeded sample is made, each in a copy of the project, and the
+Of all mutants of ``formation/`` and of ``robots/`` a sample is drawn, by a hash of each and a seed: a line that is
+written anew leaves the rest of the sample as it is. Each is made in a copy of the project, and the
 tests of that floor which run the changed line are run on it, the quickest first, until one fails. A mutant that all of
 them pass has survived. Of a line that only an import runs, a constant, they are the tests that run the rest of its
 file.
@@ -145,10 +146,15 @@ def load(modules: list[str]) -> None:
 
 
 def choose(mutant: Mutant, seen: dict[str, Any]) -> list[str]:
-    """The tests that run a mutant's line, where an import does its file, or else all of them; the quickest first."""
+    """The tests that run a mutant's line, where an import does its file, or else all of them; the quickest first.
+
+    A line that none of them runs may be machine code: then also those that do not work without the compiler.
+    """
     lines = seen["lines"].get(mutant.path, {})
     named = {name for name in lines.get(str(mutant.line), []) if name}
     named = named or {name for names in lines.values() for name in names if name}
+    if str(mutant.line) not in lines:
+        named |= set(seen["failed"])
     return sorted(named or seen["seconds"], key=seen["seconds"].__getitem__)
 
 
@@ -233,6 +239,7 @@ def main() -> None:
             sample = drawn(every, chosen.sample, chosen.seed)
             if again is not None:
                 sample = [m for m in every if (m.path, m.before, m.after) in again]
+            idle = sum(str(m.line) not in seen["lines"].get(m.path, {}) for m in every)
             alike = [m for m in sample if (m.path, m.before, m.after) in equivalent]
             tried = [m for m in sample if m not in alike]
             killed = 0
@@ -248,8 +255,9 @@ def main() -> None:
             low, high = interval(killed, len(tried))
             print(
                 f"{floor}: {killed} of {len(tried)} noticed, {killed / len(tried):.1%} "
-                f"(95 % interval {low:.1%} to {high:.1%}); {len(every)} mutants in all, {len(alike)} of the sample "
-                f"change nothing; {(time.monotonic() - started) / 60.0:.0f} min",
+                f"(95 % interval {low:.1%} to {high:.1%}); {len(alike)} more of the sample change nothing; of "
+                f"{len(every)} mutants in all {idle} are on lines that no test of {floor}/ runs; "
+                f"{(time.monotonic() - started) / 60.0:.0f} min",
                 flush=True,
             )
 
