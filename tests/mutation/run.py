@@ -47,8 +47,11 @@ ROOT = Path(__file__).parents[2]
 FLOORS = ("formation", "robots")
 SEED = 57
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
-CPU_LIMIT = 240
-"""Seconds of processor time after which a mutant counts as noticed: it never ends."""
+PATIENCE, LONGER = 30.0, 10.0
+"""Seconds of processor time, and how many times its own, after which a test that has not ended counts as failed."""
+
+COMPILATION = 90.0
+"""Seconds that a test may have more where there is a compiler."""
 
 COMPILED = re.compile(r"^@_?(compiled|inlined)$", re.MULTILINE)
 PYTHON = ["-W", "ignore::RuntimeWarning"]
@@ -82,11 +85,30 @@ class Watch:
             self.failed.add(report.nodeid)
 
 
+class Limit:
+    """A pytest plugin: a process whose test takes far longer than it should is ended, as it may never end itself."""
+
+    def __init__(self, seconds: dict[str, float], more: float) -> None:
+        self._seconds, self._more = seconds, more
+
+    def pytest_sessionstart(self) -> None:
+        """All is about to be imported."""
+        self._allow(PATIENCE)
+
+    def pytest_runtest_logstart(self, nodeid: str) -> None:
+        """A test begins."""
+        self._allow(PATIENCE + LONGER * self._seconds.get(nodeid, 0.0) + self._more)
+
+    def _allow(self, seconds: float) -> None:
+        used = resource.getrusage(resource.RUSAGE_SELF)
+        limit = int(used.ru_utime + used.ru_stime + seconds) + 1
+        resource.setrlimit(resource.RLIMIT_CPU, (limit, resource.RLIM_INFINITY))
+
+
 def forked(work: Callable[[], int], log: Path) -> int:
-    """The exit code of ``work``, done in a process of its own with a limit of time; -1 where it had to be ended."""
+    """The exit code of ``work``, done in a process of its own; -1 where that was ended."""
     child = os.fork()
     if child == 0:
-        resource.setrlimit(resource.RLIMIT_CPU, (CPU_LIMIT, CPU_LIMIT + 5))
         signal.signal(signal.SIGXCPU, signal.SIG_DFL)
         to = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         os.dup2(to, 1)
@@ -171,7 +193,8 @@ def survives(mutant: Mutant, copy: Path, tests: list[str], seen: dict[str, Any],
             os.chdir(copy)
             sys.path.insert(0, str(copy))
             sys.dont_write_bytecode = True
-            return int(pytest.main([*QUIET, "-x", *(() if compiler else PYTHON), *some]))
+            limit = Limit(seen["seconds"], COMPILATION if compiler else 0.0)
+            return int(pytest.main([*QUIET, "-x", *(() if compiler else PYTHON), *some], [limit]))
 
         return forked(work, log) == 0
 
