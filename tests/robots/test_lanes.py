@@ -83,9 +83,9 @@ def test_a_new_state_shows_its_poses_and_robots_that_touch_nobody_and_turn_left(
     np.testing.assert_array_equal(state[SIN].T, np.sin(poses[..., 2]))
     np.testing.assert_allclose(state[PX], state[X] + 0.04 * state[COS])
     np.testing.assert_allclose(state[PY], state[Y] + 0.04 * state[SIN])
-    assert (state[lanes.SIDE] == 1.0).all()
+    assert (state[[lanes.SIDE, lanes.ACTIVE]] == 1.0).all()
     assert (state[lanes.CONTACT] == NOTHING).all()
-    rest = set(range(lanes.FIELDS)) - {X, Y, THETA, COS, SIN, PX, PY, lanes.SIDE, lanes.CONTACT}
+    rest = set(range(lanes.FIELDS)) - {X, Y, THETA, COS, SIN, PX, PY, lanes.SIDE, lanes.ACTIVE, lanes.CONTACT}
     assert not state[sorted(rest)].any()
     still = lanes.at_rest(N, RUNS)
     assert (still[COS] == 1.0).all()

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from robots import GTERNAL, NearIdentityDiffeomorphism, make_world
 from robots.measured import MEASURED
-from robots.measured.camera import Camera
+from robots.measured.camera import KEPT, Camera
 from robots.obstacles import Obstacle, disc, pack
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -64,6 +64,14 @@ def test_cameras_see_the_tracked_point_of_a_while_ago_with_noise_of_their_own(se
                 seen[robot, 2] = theta + NUMBERS.marker_angle + 0.1 * normal[robot, 2]
             assert camera.seen[robot, :2] == pytest.approx(seen[robot, :2])
             assert abs(camera.seen[robot, 2] - seen[robot, 2]) <= 0.5e-3 + 1e-9  # rounded to a milliradian
+
+
+def test_however_late_a_camera_is_it_shows_no_more_than_it_has_kept() -> None:
+    poses = np.arange(12.0)[:, None, None] * np.array([[1.0, 0.0, 0.0]])
+    camera = Camera(poses[0], MEASURED)
+    for pose in poses[1:]:
+        camera.take(pose, np.array([[0.0, 0.0, 0.0, 1e3]]), np.ones(1), 0.033)
+    assert camera.seen[0, 0] == pytest.approx(poses[12 - KEPT, 0, 0] + NUMBERS.offset_ahead, abs=2e-3)
 
 
 SHAPES = {

@@ -100,5 +100,6 @@ def test_of_a_parabola_the_derivative_is_exact_and_of_a_kink_the_bound_is_its_ju
     parabola = linearise(lambda p: p + 3.0 * p**2, np.zeros((1, 2)), 0.1)
     np.testing.assert_allclose(parabola.matrix, np.eye(2), atol=1e-13)
     assert parabola.bound < 1e-12
-    kink = linearise(lambda p: np.abs(p) + 5.0 * p**2, np.zeros((1, 2)), 0.1)
-    assert kink.bound == pytest.approx(2.0)
+    for sign in (1.0, -1.0):
+        kink = linearise(lambda p, sign=sign: sign * np.abs(p) + 5.0 * p**2, np.zeros((1, 2)), 0.1)  # type: ignore[misc]
+        assert kink.bound == pytest.approx(2.0)
