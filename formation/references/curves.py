@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -96,11 +97,22 @@ class ClosedCurve:
         return np.asarray(1j * self.angular_rate * (bend / tangent).imag, dtype=np.complex128)
 
     def _derivatives(self, t: Real | float) -> tuple[Complex, Complex, Complex]:
-        phi = self.angular_rate * np.asarray(t, dtype=np.float64)
-        aim = np.exp(1j * self.direction)
-        found = CURVES[self.shape](phi, complex(*self.size) / 2.0)
-        p, v, a = (aim * (np.conj(each) if self.clockwise else each) for each in found)
-        return p, v, a
+        return _at(self, t) if isinstance(t, float) else _derivatives(self, t)
+
+
+def _derivatives(curve: ClosedCurve, t: Real | float) -> tuple[Complex, Complex, Complex]:
+    """P and its first two derivatives by phi at times t (...)."""
+    phi = curve.angular_rate * np.asarray(t, dtype=np.float64)
+    aim = np.exp(1j * curve.direction)
+    found = CURVES[curve.shape](phi, complex(*curve.size) / 2.0)
+    p, v, a = (aim * (np.conj(each) if curve.clockwise else each) for each in found)
+    return p, v, a
+
+
+@lru_cache(maxsize=2)
+def _at(curve: ClosedCurve, t: float) -> tuple[Complex, Complex, Complex]:
+    """The same at one time; a runner asks for velocity, turn and rate of each in turn, and for the turn since 0."""
+    return _derivatives(curve, t)
 
 
 def curve_length(shape: str, size: tuple[float, float]) -> float:
