@@ -15,6 +15,7 @@ import threading
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from importlib.abc import MetaPathFinder
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, cast
@@ -29,6 +30,17 @@ STANDARD = 3
 
 class EncodingError(Exception):
     """A recording could not be made."""
+
+
+class WithoutPandas(MetaPathFinder):
+    """Has pandas not found: pyarrow loads it, to see whether a list is a series, which none here is.
+
+    With None in its place among the modules pyarrow takes that for pandas, and blueprints lose what it was to convert.
+    """
+
+    def find_spec(self, fullname: str, *_: object) -> None:
+        if fullname == "pandas":
+            raise ModuleNotFoundError("recordings are encoded without pandas", name=fullname)
 
 
 @contextmanager
@@ -124,6 +136,6 @@ def _answer(encode: Callable[[], bytes], out: int) -> None:
     os.closerange(STANDARD, out)
     os.closerange(out + 1, os.sysconf("SC_OPEN_MAX"))
     gc.disable()  # what is made here is needed until the end: searching for garbage is time lost
-    sys.modules["pandas"] = cast(Any, None)  # pyarrow loads it, to see whether a list is a series, which none here is
+    sys.meta_path.insert(0, WithoutPandas())
     with os.fdopen(out, "wb") as answer:
         answer.write(encode())

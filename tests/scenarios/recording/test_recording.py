@@ -555,6 +555,13 @@ def test_a_killed_encoder_costs_the_recording_and_nothing_else(tmp_path: Path) -
     assert damage(recording_of(tmp_path / "run", tmp_path, Console(quiet=True))) is None
 
 
+def test_a_run_leaves_nothing_out_of_its_recording(tmp_path: Path) -> None:
+    """What rerun cannot convert it leaves out, with a warning."""
+    told = run_with("import warnings; warnings.simplefilter('error')", tmp_path / "run")
+    assert "recording: cannot be written" not in told
+    assert "run folder: " in told
+
+
 def test_a_recording_that_cannot_be_made_costs_nothing_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(*arguments: Any) -> bytes:
         raise ValueError("no such component")
