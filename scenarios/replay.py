@@ -10,7 +10,7 @@ from rich.console import Console
 
 from scenarios.errors import InputError, plain
 from scenarios.recording import file, viewer
-from scenarios.storage import run_folder, script_folder
+from scenarios.storage import run_folder
 
 
 def replay(folders: Sequence[Path], web: bool, console: Console) -> None:
@@ -35,6 +35,8 @@ def recording_of(folder: Path, scratch: Path, console: Console) -> Path:
     wrong = file.damage(path)
     if wrong is None and run_folder.is_run(folder):
         return path
+    from scenarios.storage import script_folder  # loads numpy, which a whole recording does not wait for
+
     if not script_folder.is_script(folder):
         run_folder.read(folder)  # says what is wrong before rerun is loaded
     from scenarios.recording import content as encoding
@@ -53,6 +55,8 @@ def recording_of(folder: Path, scratch: Path, console: Console) -> Path:
 
 
 def _pair(folders: Sequence[Path], scratch: Path) -> Path:
+    from scenarios.storage import script_folder
+
     path = scratch / run_folder.RECORDING
     of_scripts = [script_folder.is_script(folder) for folder in folders]
     if all(of_scripts):

@@ -160,7 +160,9 @@ def test_importing_loads_no_heavy_package(module: str) -> None:
     assert done.stdout.split() == []
 
 
-@pytest.mark.parametrize("module", ["scenarios", "scenarios.report.catalogue", "scenarios.studies.project"])
+@pytest.mark.parametrize(
+    "module", ["scenarios", "scenarios.replay", "scenarios.report.catalogue", "scenarios.studies.project"]
+)
 def test_what_computes_nothing_loads_no_numpy(module: str) -> None:
     code = f"import sys, {module}; print('numpy' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
