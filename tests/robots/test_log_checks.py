@@ -1,6 +1,7 @@
 """What a log's check repairs, trims and refuses, with the numbers that it says."""
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from robots.identification import check
 from robots.identification.check import checked
 from robots.identification.log import LogError
+from robots.identification.reading import TIMES, read_all, read_arrays
 from robots.identification.synthetic import random_way, synthesise
 from robots.measured import MEASURED
 
@@ -117,3 +119,48 @@ def test_a_pose_without_counts_has_the_heading_next_to_its_neighbours(raw: tuple
     counts[[80, 81, 200]] = np.nan
     log, clean = checked(raw[0], counts), checked(*raw)
     np.testing.assert_allclose(log.poses[[80, 81, 200]], clean.poses[[80, 81, 200]])
+
+
+def saved(folder: Path, **arrays: np.ndarray) -> Path:
+    np.savez(folder / "log.npz", **arrays)
+    return folder / "log.npz"
+
+
+def test_times_are_read_where_a_file_has_them_and_have_to_grow(
+    raw: tuple[np.ndarray, np.ndarray], tmp_path: Path
+) -> None:
+    poses, counts = raw
+    times = np.cumsum(np.full(TURNS, 0.07))
+    name = TIMES[0]
+    read = read_all(saved(tmp_path, poses=poses, counts=counts, **{name: times}))
+    assert read.times is not None
+    np.testing.assert_array_equal(read.times, times)
+    assert read.robots == 1
+    assert read_all(saved(tmp_path, poses=poses, counts=counts)).times is None
+    still = times.copy()
+    still[7] = still[6]
+    for bad in (times[:-1], times[::-1], still):
+        with pytest.raises(LogError, match=rf"expected 300 times that grow, one for every pose, got {len(bad)}"):
+            read_all(saved(tmp_path, poses=poses, counts=counts, **{name: bad}))
+
+
+def test_what_does_not_belong_together_is_not_read(raw: tuple[np.ndarray, np.ndarray], tmp_path: Path) -> None:
+    poses, counts = raw
+    with pytest.raises(LogError, match="expected as many poses as counts, got 300 and 299"):
+        read_all(saved(tmp_path, poses=poses, counts=counts[:-1]))
+    with pytest.raises(LogError, match="no array of encoder counts"):
+        read_arrays(saved(tmp_path, poses=poses))
+    two = np.stack([poses, poses], axis=2)
+    with pytest.raises(LogError, match="expected counts of 2 robots, as poses, got 1"):
+        read_arrays(saved(tmp_path, poses=two, counts=counts[..., None]))
+    both = saved(tmp_path, poses=two, counts=np.stack([counts, 2.0 * counts], axis=2))
+    np.testing.assert_array_equal(read_arrays(both, 2)[1], 2.0 * counts)
+    for robot in (0, 3):
+        with pytest.raises(LogError, match=f"expected a robot from 1 to 2, got {robot}"):
+            read_arrays(both, robot)
+    with pytest.raises(LogError, match="no such file"):
+        read_all(tmp_path / "other.npz")
+    with pytest.raises(LogError, match=r"poses: expected 3 values a turn, got the shape \(300, 4, 1\)|got the shape"):
+        read_all(saved(tmp_path, poses=np.zeros((300, 4)), counts=counts))
+    with pytest.raises(LogError, match="poses: expected numbers, got <U1"):
+        read_all(saved(tmp_path, poses=np.full((300, 3), "x"), counts=counts))
