@@ -96,6 +96,8 @@ def test_the_regressors_of_a_log_are_its_derivatives_by_the_numbers() -> None:
     truth = SILENT.wheel_radius / SILENT.base_length
     design = linearised(log, SILENT.lag, SILENT.wheel_radius, truth)
     assert design.columns.shape == (log.turns, 3, 1 + len(COLUMNS))
+    lever = [1 + COLUMNS.index(name) for name in ("offset_ahead", "offset_left")]
+    assert not design.columns[0][:, lever].any()  # a point off the axle begins where the first pose is
     known = design.way.known
     values = {
         "wheel_radius": SILENT.wheel_radius, "per_turned": truth, "offset_ahead": SILENT.offset_ahead,

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robots.rps import columns, constants, distances, inertial, starts
-from robots.rps.version2 import gternal_patch
+from robots.rps.version2 import gternal_patch, misc
 
 SEEDS = st.integers(0, 2**32 - 1)
 REACH = 1.2
@@ -274,3 +274,9 @@ def test_columns_and_numbers_that_make_no_sense_are_refused_by_name() -> None:
     for bad in (1, 2.0):
         with pytest.raises(ValueError, match="count must be a whole number from 2 on"):
             columns.whole(2, count=bad)  # type: ignore[arg-type]
+
+
+def test_who_is_exactly_as_far_off_as_is_allowed_has_arrived() -> None:
+    states, goals = np.array([[0.25, 0.5], [0.0, 0.0], [0.5, 0.0]]), np.zeros((3, 2))
+    assert misc.create_at_position(0.25)(states, goals[:2])[1].tolist() == [True, False]
+    assert misc.create_at_pose(0.25, 0.5)(states, goals)[1].tolist() == [True, False]
