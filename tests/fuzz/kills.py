@@ -20,7 +20,7 @@ from pathlib import Path
 
 from scenarios.errors import InputError
 from scenarios.simulation.compiling import ANNOUNCEMENT
-from scenarios.storage import run_folder
+from scenarios.storage import manifest, run_folder
 
 KILLS = 60
 SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
@@ -46,7 +46,7 @@ COMMANDS = {
 }
 NEXT = {
     "run": ("keys", "--markdown", "place/keys.md"),
-    "sweep": ("keys", "--markdown", "place/sweep/keys.md"),
+    "sweep": COMMANDS["sweep"],  # goes on: its scratch is beside its folder and in it
     "update": ("keys", "--markdown", "place/baselines/keys.md"),
     "animate": ("keys", "--markdown", "place/run/keys.md"),
     "plot": ("keys", "--markdown", "place/run/keys.md"),
@@ -114,8 +114,10 @@ def digests(folder: Path) -> dict[str, str]:
     return {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
 
 
-def complaints(name: str, number: signal.Signals, ended: Ended, place: Path, before: dict[str, str]) -> list[str]:
-    """What is wrong after a kill, before any other command."""
+def complaints(
+    name: str, number: signal.Signals, ended: Ended, place: Path, before: dict[str, str], new: set[str]
+) -> list[str]:
+    """What is wrong after a kill, before any other command; ``new`` are the names of the files of a run just made."""
     found = []
     early = ended.code == -number  # while the interpreter starts or ends, which a shell counts as the same code
     if number in ORDERLY and not early and ended.code not in (0, 1, ORDERLY[number]):
@@ -125,7 +127,8 @@ def complaints(name: str, number: signal.Signals, ended: Ended, place: Path, bef
     if number in ORDERLY and not early and (left := list(place.rglob(".*.unfinished"))):
         found.append(f"scratch after {number.name}: {left}")
     after = digests(place)
-    replaced = "run/" if name == "run" and ended.code in (0, 1) else None  # it was done before it was killed
+    done = ended.code in (0, 1) or (names(place / "run") == new and manifest.foreign(place / "run") is None)
+    replaced = "run/" if name == "run" and done else None  # before it was killed
     for path, digest in before.items():
         if replaced is not None and path.startswith(replaced):
             continue
@@ -145,6 +148,11 @@ def complaints(name: str, number: signal.Signals, ended: Ended, place: Path, bef
             if ".unfinished" in str(scratch):
                 found.append(f"{scratch.parent} can be read as if whole")
     return found
+
+
+def names(folder: Path) -> set[str]:
+    """Of the files of a folder."""
+    return {path.name for path in folder.iterdir()} if folder.is_dir() else set()
 
 
 def processes_in(folder: Path) -> list[str]:
@@ -167,7 +175,11 @@ def main(kills: int = KILLS) -> int:
         place = origin / "place"
         place.mkdir(parents=True)
         (origin / "three.toml").write_text(SCENARIO, encoding="utf-8")
+        whole(COMMANDS["run"], origin)  # compiles, where nothing did before: later ones are over sooner
+        new = names(place / "run")
         seconds = {command: whole(arguments, origin) for command, arguments in COMMANDS.items()}
+        shutil.rmtree(place / "sweep")  # of a sweep that is done nothing would be left to do
+        (place / "sweep").mkdir()
         (place / "mine.txt").write_text("mine", encoding="utf-8")
         (place / "baselines" / "mine.txt").write_text("mine", encoding="utf-8")
         print("seconds undisturbed: " + ", ".join(f"{key} {value:.1f}" for key, value in seconds.items()), flush=True)
@@ -179,7 +191,7 @@ def main(kills: int = KILLS) -> int:
             shutil.copytree(origin, folder)
             before = digests(folder / "place")
             ended = killed(COMMANDS[command], folder, number, after)
-            found = complaints(command, number, ended, folder / "place", before)
+            found = complaints(command, number, ended, folder / "place", before, new)
             deadline = time.monotonic() + 30.0
             while (alive := processes_in(folder)) and time.monotonic() < deadline:
                 time.sleep(0.1)
