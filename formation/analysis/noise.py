@@ -31,6 +31,7 @@ def noise_power(cascade: Cascade, positions: Real, position_noise: float, bearin
     return 2.0 * position_noise**2 + 2.0 * length**2 * (1.0 - np.exp(-(bearing_noise**2) / 2.0))
 
 
+@np.errstate(divide="ignore", invalid="ignore")  # at the longest period what does not decay has no bound
 def covariance(cascade: Cascade, period: float, power: Real) -> Complex:
     """(n, n) E[p~ p~^H], m^2, in the steady state of commands held over ``period`` seconds.
 
@@ -72,8 +73,12 @@ def covariance(cascade: Cascade, period: float, power: Real) -> Complex:
 
 
 def noise_rms(cascade: Cascade, period: float, power: Real) -> Real:
-    """(n,) root mean square distance of each agent from its place, metres; arguments as for :func:`covariance`."""
-    return np.sqrt(np.maximum(np.diagonal(covariance(cascade, period, power)).real, 0.0))
+    """(n,) root mean square distance of each agent from its place, metres; arguments as for :func:`covariance`.
+
+    At the longest period itself, an agent whose errors no longer decay, and all that follow it, are infinitely far off.
+    """
+    square = np.diagonal(covariance(cascade, period, power)).real
+    return np.sqrt(np.where(np.isnan(square), np.inf, np.maximum(square, 0.0)))
 
 
 def bias_response(cascade: Cascade) -> Complex:

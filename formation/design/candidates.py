@@ -125,9 +125,18 @@ def propose(field: Field, task: Task, leaders: tuple[int, int] | None) -> list[C
     found: dict[bytes, Candidate] = {}
     for name, choice in _kinds(field, task, leaders):
         key = choice.order.tobytes() + choice.pairs.tobytes()
-        if choice.whole and key not in found:
+        if choice.whole and key not in found and _is_nondegenerate(choice, field.positions):
             found[key] = evaluate(name, field, task, choice)
     return sorted(found.values(), key=lambda each: (np.inf if each.settling is None else each.settling, each.noise))
+
+
+def _is_nondegenerate(choice: Choice, positions: Real) -> bool:
+    """Whether the places are a target for a graph: a triangle that is not flat may be flatter than Assumption 2 has."""
+    try:
+        choice.target(positions)
+    except ValueError:
+        return False
+    return True
 
 
 def unbeaten(candidates: list[Candidate]) -> list[Candidate]:

@@ -72,9 +72,9 @@ class ClosedForms:
 
     @property
     def last_over_first(self) -> float:
-        """Noise of the noisiest follower over that of the first in the cascade."""
+        """Noise of the noisiest follower over that of the first in the cascade; 1 where that has none or no bound."""
         followers = self.noise[agents.FIRST_ORDINARY :]
-        return float(followers.max() / followers[0])
+        return float(followers.max() / followers[0]) if 0.0 < followers[0] < np.inf else 1.0
 
 
 @dataclass(frozen=True, eq=False)

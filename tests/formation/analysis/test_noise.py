@@ -132,3 +132,10 @@ def test_a_biased_first_follower_takes_all_others_with_it_if_it_moves_at_all() -
     np.testing.assert_allclose(moving, (z - z[0]) / (z[1] - z[0]))
     assert not standing.any()
     assert bias_response(Cascade.of(target)).shape == (5, 7)
+
+
+def test_at_the_longest_period_an_agent_and_all_that_follow_it_are_infinitely_far_off(paper: TargetFormation) -> None:
+    cascade = Cascade.of(paper, 1.0)
+    found = noise_rms(cascade, 2.0, noise_power(cascade, paper.positions, 0.01))
+    assert found[0] == 0.0
+    assert np.isinf(found[1:]).all()

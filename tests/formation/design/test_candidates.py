@@ -151,3 +151,11 @@ def test_proposals_are_sorted_by_settling_then_noise_and_none_is_given_twice(pap
     graphs = {(each.choice.order.tobytes(), each.choice.pairs.tobytes()) for each in found}
     assert len(graphs) == len(found) > 3
     assert propose(Field(field.positions, np.zeros((6, 6), dtype=bool)), Task(field.positions), (0, 1)) == []
+
+
+def test_a_graph_with_a_triangle_flatter_than_assumption_2_allows_is_no_candidate() -> None:
+    places = np.array([[0.0, 0.0], [1.0, 0.0], [1e6, 1.0], [1.0, 1.0], [1.5, -0.5], [-0.5, 1.5]])
+    field, task = Field.open(places), Task(places + 0.1, "stationary", period=0.033)
+    for found in propose(field, task, (0, 1)):
+        found.choice.target(places)  # is one
+    assert len(propose(field, task, (0, 1))) < len(names(field, task, (0, 1)))

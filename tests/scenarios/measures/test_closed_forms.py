@@ -46,6 +46,13 @@ def test_a_long_cascade_is_warned_of_and_a_short_one_is_not(shape: Experiment) -
     assert "A long cascade" not in shown(shape)
 
 
+def test_noise_that_is_too_small_to_be_squared_does_not_amplify(varied: Callable[..., Experiment]) -> None:
+    experiment = varied("sensor.position_noise_m=1e-200")
+    found = closed_forms(experiment, experiment.initial_points(0))
+    assert found is not None
+    assert (found.noise.max(), found.last_over_first) == (0.0, 1.0)
+
+
 def test_commands_that_turn_robots_past_their_aim_are_warned_of() -> None:
     literal = open_experiment("random-50", ("plant.name=unicycle", "safety.filter=none"))
     assert "Warning: the law asks for" in shown(literal)
