@@ -43,4 +43,5 @@ def test_a_notebook_runs_and_says_what_it_should(path: Path, tmp_path: Path) -> 
     text = "\n".join(str(output.get("data", output.get("text"))) for output in outputs)
     assert [said for said in SAID[path.stem] if not re.search(said, text)] == []
     assert text.count("smallest separation:") == (path.stem == "from-scenario-to-figure"), "a run shows itself once"
-    assert not any(output.get("name") == "stderr" for output in outputs)
+    told = {output["text"] for output in outputs if output.get("name") == "stderr"}
+    assert told <= {"formation: compiling, once\n"}  # where this machine has not done so yet
