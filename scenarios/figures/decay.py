@@ -29,6 +29,9 @@ Real = NDArray[np.float64]
 NEAREST = 1e-6
 """Metres; what lies below is left out of the figure."""
 
+FARTHEST = 1e12
+"""Metres; the curves of a run that diverges leave the figure there, before their squares are no numbers."""
+
 NOTEWORTHY = 1e-3
 """Metres."""
 
@@ -148,7 +151,8 @@ def _draw_phase(axes: Axes, experiment: Experiment, trajectory: Trajectory, inde
     farthest = distances[:, agents.FIRST_ORDINARY :].max(axis=1)
     far = np.flatnonzero(farthest >= NEAREST)
     until = t[min(far[-1] + 1, len(t) - 1)] if far.size else 0.0
-    axes.set(xlim=(0.0, max(until, t[-1] * 0.1)), ylim=(NEAREST, 2.5 * farthest.max()), ylabel="distance (m)")
+    top = float(np.fmin(2.5 * farthest.max(), FARTHEST))
+    axes.set(xlim=(0.0, max(until, t[-1] * 0.1)), ylim=(NEAREST, top), ylabel="distance (m)")
     axes.yaxis.set_major_locator(LogLocator(numticks=5))
     axes.yaxis.set_minor_locator(NullLocator())
     if late is not None:

@@ -334,3 +334,12 @@ def test_a_label_that_is_led_back_does_not_cross_what_is_solid() -> None:
     at_wall = np.interp(0.62, np.sort(y), x[np.argsort(y)])
     assert y.max() < 0.62 or not 0.39 < at_wall < 0.61
     assert axes.texts[0].get_text() == "7"
+
+
+def test_a_run_that_leaves_every_scale_has_all_its_figures() -> None:
+    slow = ("plant.name=single_integrator", "plant.control_period_s=100", "safety.filter=none")
+    lost = ran("shape", *slow, duration=10_000.0)
+    assert np.abs(lost.trajectory.points[np.isfinite(lost.trajectory.points)]).max() > 1e160
+    for name in names_for(lost.experiment):
+        for axes in draw(lost.experiment, lost.trajectory, lost.metrics, name).axes:
+            assert np.isfinite([*axes.get_xlim(), *axes.get_ylim()]).all()
