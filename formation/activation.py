@@ -21,8 +21,6 @@ class SequentialActivation:
 
     Attributes:
         active: (..., n) which agents may move now. The leader and the first follower always may.
-        rates: (n - 2,) at which the followers decay, 1/s.
-        tolerance: distance from its place below which a follower counts as settled, metres.
     """
 
     def __init__(
@@ -32,9 +30,9 @@ class SequentialActivation:
         batch: tuple[int, ...] = (),
         own_gains: Real | None = None,
     ) -> None:
-        self.rates = decay_rates(target) if own_gains is None else decay_rates(target) * own_gains
+        self._rates = decay_rates(target) if own_gains is None else decay_rates(target) * own_gains
         self._i, self._j = target.graph.neighbours.T
-        self.tolerance = tolerance
+        self._tolerance = tolerance
         self._settled = np.zeros((*batch, target.graph.n), dtype=bool)
         self._settled[..., : agents.FIRST_ORDINARY] = True
         self.active = self._settled.copy()
@@ -42,8 +40,8 @@ class SequentialActivation:
 
     def update(self, velocity: Real) -> None:
         """Take the law's velocities (..., n, 2), m/s, without v_r, of all agents, active or not, at one instant."""
-        distance = np.hypot(velocity[..., 0], velocity[..., 1])[..., agents.FIRST_ORDINARY :] / self.rates
-        arrived = self.active[..., agents.FIRST_ORDINARY :] & (distance < self.tolerance)
+        distance = np.hypot(velocity[..., 0], velocity[..., 1])[..., agents.FIRST_ORDINARY :] / self._rates
+        arrived = self.active[..., agents.FIRST_ORDINARY :] & (distance < self._tolerance)
         self._settled[..., agents.FIRST_ORDINARY :] |= arrived
         self._activate()
 

@@ -7,13 +7,11 @@ no protocol of its own, and knows of no compiler: the caller brings one.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from formation import agents
-from formation.activation import SequentialActivation
 
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -21,41 +19,25 @@ Index = NDArray[np.int64]
 _FOLLOWERS = agents.FIRST_ORDINARY
 
 
-class Sequence(NamedTuple):
-    """Who waits for whom.
-
-    Attributes:
-        neighbours: (n - 2, 2) rows i, j that each follower waits for; (0, 2) where nobody waits.
-        rates: (n - 2,) at which the followers decay, 1/s.
-        tolerance: distance from its place below which a follower counts as settled, metres.
-    """
-
-    neighbours: Index
-    rates: Real
-    tolerance: float
-
-
-def sequence(activation: SequentialActivation | None, neighbours: Index) -> Sequence:
-    """The constants of an activation among neighbours (n - 2, 2); None for agents that all begin at once."""
-    if activation is None:
-        return Sequence(np.empty((0, 2), dtype=np.int64), np.empty(0), 0.0)
-    return Sequence(neighbours.astype(np.int64), activation.rates, activation.tolerance)
-
-
-def hold(gx: Real, gy: Real, law: Sequence, begins: bool, active: Real, settled: Real) -> None:
+def hold(
+    gx: Real, gy: Real, factors: Real, edges: Index, tolerance: float, begins: bool, active: Real, settled: Real
+) -> None:
     """Let those wait whose neighbours have not settled.
 
     Args:
         gx, gy: (n, L) the law's velocities of all agents, m/s, without v_r; 0 in the end for those who wait.
+        factors: (n - 2, 4) of :class:`formation.laws.angle_loop.Gains`: both gains of a follower add up to its rate.
+        edges: (2n - 3, 2) rows (observer, observed) in the order of :attr:`SensingGraph.edges`.
+        tolerance: distance from its place below which a follower counts as settled, metres.
         begins: whether a control period begins: then who has settled is found anew.
-        law: constants; a follower's neighbours stand before it.
         active, settled: (n, L) 1 or 0, brought up to date.
     """
-    for row in range(len(law.rates)):
-        k, i, j = _FOLLOWERS + row, law.neighbours[row, 0], law.neighbours[row, 1]
+    for row in range(len(factors)):
+        k, i, j = _FOLLOWERS + row, edges[1 + 2 * row, 1], edges[2 + 2 * row, 1]
+        near = tolerance * (factors[row, 0] + factors[row, 2])
         for m in range(gx.shape[1]):
             x, y = gx[k, m], gy[k, m]
-            if begins and active[k, m] > 0.0 and math.sqrt(x * x + y * y) / law.rates[row] < law.tolerance:
+            if begins and active[k, m] > 0.0 and math.sqrt(x * x + y * y) < near:
                 settled[k, m] = 1.0
             if begins and settled[i, m] > 0.0 and settled[j, m] > 0.0:
                 active[k, m] = 1.0

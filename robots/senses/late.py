@@ -47,8 +47,6 @@ def late(state: Real, delay: int, knows: str) -> Late:
 @compiled
 def remember(state: Real, kept: Late) -> None:
     """Write where robots were when they were seen, and keep where they are."""
-    if len(kept.states) == 0:
-        return
     oldest = kept.states[kept.turn[0]]
     kept.turn[0] = (kept.turn[0] + 1) % len(kept.states)
     for field in range(4):

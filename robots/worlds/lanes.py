@@ -62,6 +62,7 @@ class Wheels(NamedTuple):
         limits: (n,) of either wheel's speed of each robot, rad/s.
         projections: (n,) l of each, metres.
         saturation: :data:`UNLIMITED`, :data:`SCALE` or :data:`CLIP`.
+        room: (3, L) for the turns of one robot in all runs.
     """
 
     radius: float
@@ -69,13 +70,16 @@ class Wheels(NamedTuple):
     limits: Real
     projections: Real
     saturation: int
+    room: Real
 
 
-def wheels(drive: DifferentialDrive, nid: NearIdentityDiffeomorphism, saturation: Saturation | None, n: int) -> Wheels:
-    """The drives of n robots for :func:`roll`; ``saturation`` None for wheels without limit."""
+def wheels(
+    drive: DifferentialDrive, nid: NearIdentityDiffeomorphism, saturation: Saturation | None, n: int, runs: int
+) -> Wheels:
+    """The drives of n robots in so many runs for :func:`roll`; ``saturation`` None for wheels without limit."""
     mode = UNLIMITED if saturation is None else _SATURATION[saturation]
     limits, projections = (np.array(np.broadcast_to(a, n)) for a in (drive.wheel_speed_limit, nid.projection_distance))
-    return Wheels(drive.wheel_radius, drive.base_length / 2.0, limits, projections, mode)
+    return Wheels(drive.wheel_radius, drive.base_length / 2.0, limits, projections, mode, np.empty((3, runs)))
 
 
 def at_rest(n: int, runs: int) -> Real:
@@ -96,6 +100,23 @@ def new_state(poses: Real, ahead: float | Real) -> Real:
     return state
 
 
+WITHIN = 0.785
+"""Radians, an eighth of a turn."""
+
+
+@inlined
+def sine_cosine_within(r: float) -> tuple[float, float]:
+    """Those of :func:`sine_cosine`, bit for bit, of an angle up to :data:`WITHIN`, radians."""
+    z = r * r
+    tail = 2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)
+    tail = 8.33333333332248946124e-03 + z * (-1.98412698298579493134e-04 + z * tail)
+    sine = r + r * z * (-1.66666666666666324348e-01 + z * tail)
+    tail = -2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)
+    tail = -1.38888888888741095749e-03 + z * (2.48015872894767294178e-05 + z * tail)
+    cosine = 1.0 - 0.5 * z + z * z * (4.16666666666666019037e-02 + z * tail)
+    return sine, cosine
+
+
 @inlined
 def sine_cosine(angle: float) -> tuple[float, float]:
     """Sine and cosine of an angle, radians, within 2 units in the last place up to 1e5.
@@ -105,13 +126,7 @@ def sine_cosine(angle: float) -> tuple[float, float]:
     quarters = math.floor(angle * 0.6366197723675814 + 0.5)
     r = angle - quarters * 1.57079632673412561417e00
     r = (r - quarters * 6.07710050630396597660e-11) - quarters * 2.02226624879595063154e-21
-    z = r * r
-    tail = 2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)
-    tail = 8.33333333332248946124e-03 + z * (-1.98412698298579493134e-04 + z * tail)
-    sine = r + r * z * (-1.66666666666666324348e-01 + z * tail)
-    tail = -2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)
-    tail = -1.38888888888741095749e-03 + z * (2.48015872894767294178e-05 + z * tail)
-    cosine = 1.0 - 0.5 * z + z * z * (4.16666666666666019037e-02 + z * tail)
+    sine, cosine = sine_cosine_within(r)
     quadrant = quarters - 4.0 * math.floor(quarters * 0.25)
     odd = (quadrant == 1.0) | (quadrant == 3.0)
     one, other = (cosine, sine) if odd else (sine, cosine)
@@ -138,14 +153,22 @@ def wheel_speeds(ux: float, uy: float, wheels: Wheels, i: int) -> tuple[float, f
 def roll(state: Real, wheels: Wheels, period: float) -> None:
     """Drive all robots by their commands UX, UY for one period, seconds: NID, wheels, exact arcs."""
     r, half_base = wheels.radius, wheels.half_base
+    halves, sines, cosines = wheels.room[0], wheels.room[1], wheels.room[2]  # of the turns
     for i in range(state.shape[1]):
         ahead = wheels.projections[i]
         for m in range(state.shape[2]):
             left, right = wheel_speeds(state[UX, i, m], state[UY, i, m], wheels, i)
             state[LEFT, i, m], state[RIGHT, i, m] = left, right
-            half = 0.25 * period * r / half_base * (right - left)  # of the turn
-            length = 0.5 * period * r * (right + left)
-            sine, cosine = sine_cosine(half)
+            halves[m] = 0.25 * period * r / half_base * (right - left)
+        if wheels.saturation != UNLIMITED and 0.5 * period * r / half_base * wheels.limits[i] < WITHIN:
+            for m in range(state.shape[2]):  # limited wheels turn little: a quarter less time
+                sines[m], cosines[m] = sine_cosine_within(halves[m])
+        else:
+            for m in range(state.shape[2]):
+                sines[m], cosines[m] = sine_cosine(halves[m])
+        for m in range(state.shape[2]):
+            half, sine, cosine = halves[m], sines[m], cosines[m]
+            length = 0.5 * period * r * (state[RIGHT, i, m] + state[LEFT, i, m])
             chord = length * (sine / half if half != 0.0 else 1.0)
             c, s = state[COS, i, m], state[SIN, i, m]
             c, s = c * cosine - s * sine, s * cosine + c * sine  # half of the turn is done: the chord's direction

@@ -33,7 +33,7 @@ def test_a_period_of_the_lanes_is_one_of_the_plain_unicycle(
     poses = rng.uniform(-3.0, 3.0, (RUNS, N, 3))
     state = new_state(poses, 0.04)
     drive = GTERNAL.drive
-    constants = wheels(drive, nid, saturation, N)
+    constants = wheels(drive, nid, saturation, N, RUNS)
     one_by_one = Unicycle(poses, nid, drive)
     if saturation is not None:
         one_by_one = Saturated(poses, nid, drive, saturation)
@@ -50,7 +50,7 @@ def test_a_period_of_the_lanes_is_one_of_the_plain_unicycle(
 
 def test_every_robot_has_its_own_limit_and_its_own_point_ahead(plain: Plain) -> None:
     drive, ahead = GTERNAL.drive, np.array([0.02, 0.05, 0.1])
-    constants = wheels(drive, NearIdentityDiffeomorphism(ahead), "scale", N)
+    constants = wheels(drive, NearIdentityDiffeomorphism(ahead), "scale", N, 1)
     limits = np.array([1.0, 2.0, 4.0])
     constants = constants._replace(limits=limits)
     state = new_state(np.zeros((1, N, 3)), ahead[:, None])
@@ -67,7 +67,7 @@ def test_headings_stay_unit_vectors_of_the_angle_that_is_counted(turn: float, th
     nid = NearIdentityDiffeomorphism(0.04)
     state = new_state(np.array([[[0.0, 0.0, theta]]]), 0.04)
     state[UY] = 0.04 * turn / PERIOD
-    plain(roll)(state, wheels(GTERNAL.drive, nid, None, 1), PERIOD)
+    plain(roll)(state, wheels(GTERNAL.drive, nid, None, 1, 1), PERIOD)
     heading = complex(state[COS, 0, 0], state[SIN, 0, 0])
     assert state[THETA, 0, 0] == pytest.approx(theta + turn, abs=1e-12)
     assert abs(heading - np.exp(1j * (theta + turn))) < 1e-13 * max(1.0, abs(turn))
@@ -97,7 +97,7 @@ def test_a_lane_of_robots_with_bodies_is_the_world_with_mass(plain: Plain) -> No
     nid, drive = NearIdentityDiffeomorphism(0.04), GTERNAL.drive
     poses = np.array([[0.0, 0.0, 0.3], [0.16, 0.02, 3.0], [-0.5, 0.4, -1.0]])
     world, other = Contact(poses, nid, GTERNAL, "scale"), Contact(poses, nid, GTERNAL, "scale")
-    state, constants = new_state(poses[None], 0.04), wheels(drive, nid, "scale", N)
+    state, constants = new_state(poses[None], 0.04), wheels(drive, nid, "scale", N, 1)
     rng, touched = np.random.default_rng(1), False
     for _ in range(30):
         commands = rng.normal(0.0, 0.05, (N, 2)) + [0.15, 0.0]

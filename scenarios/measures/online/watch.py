@@ -55,6 +55,7 @@ class Watch:
         runs = state.shape[2]
         targets = experiment.target_angles
         self._experiment = experiment
+        self._as_checked = ahead_as_checked(experiment)
         self._t, _ = times(experiment)
         self._angles = Angles(
             experiment.angles.triples.astype(np.int64),
@@ -74,7 +75,7 @@ class Watch:
         from scenarios.measures.online.watching import look
 
         rows, experiment = chunk.rows, self._experiment
-        centres = rows if ahead_as_checked(experiment) else self._centred(rows)
+        centres = rows if self._as_checked else self._centred(rows)
         look(rows, centres, chunk.first, self._angles, self._ground, self._seen, self._room)
         if experiment.arena.obstacles:
             from robots.worlds.lanes import PX, PY

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from scenarios.definition.experiment import Experiment
-from scenarios.simulation.schedule import Part, schedule
+from scenarios.simulation.schedule import Part, count_periods, schedule
 from scenarios.simulation.told import runge_kutta_steps, told
 
 if TYPE_CHECKING:
@@ -20,6 +21,9 @@ Real = NDArray[np.float64]
 
 BLOCK = 256
 """Control periods whose commands are found at once."""
+
+KEPT = 100_000
+"""Vectors of v_r up to which the commands of a whole run are kept for the next run: found in a tenth of a second."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +48,16 @@ class Orders:
 
 def orders(experiment: Experiment) -> Iterator[Orders]:
     """The commands of a run, period by period: v_r as the leader has it, or as each agent has it by consensus."""
+    each = len(_instants(experiment)) * (1 if experiment.estimator is None else experiment.n)
+    return _found(experiment) if count_periods(experiment) * each > KEPT else iter(_kept(experiment))
+
+
+@lru_cache(maxsize=1)
+def _kept(experiment: Experiment) -> tuple[Orders, ...]:
+    return tuple(_found(experiment))
+
+
+def _found(experiment: Experiment) -> Iterator[Orders]:
     instants = _instants(experiment)
     estimates = None if experiment.estimator is None else np.zeros((experiment.n, 2))
     clock = 0.0

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from formation.laws import activation_loop, angle_loop
-from formation.laws.activation_loop import Sequence
 from formation.laws.angle_loop import Gains
 from robots.compiled import compiled, inlined, program
 from robots.safety.rows import Constants, Things
@@ -56,12 +55,20 @@ class Guard(NamedTuple):
 
 
 class Law(NamedTuple):
-    """The law, its edges (m, 2), rows (observer, observed), how late, who waits, and room (2, m, L) for its input."""
+    """The law and what agents know.
+
+    Attributes:
+        gains: of the law.
+        edges: (m, 2) along which it measures, rows (observer, observed).
+        late: how old measurements are.
+        settled: metres from its place below which a follower lets others begin; 0 where all begin at once.
+        seen: (2, m, L) room for what is measured.
+    """
 
     gains: Gains
     edges: Index
     late: Late
-    sequence: Sequence
+    settled: float
     seen: Real
 
 
@@ -91,13 +98,12 @@ def advance(
     """
     for k in range(len(rows)):
         heard = Noise(noise.keys[k], noise.position, noise.bearing)
-        remember(state, law.late)
+        if len(law.late.states):
+            remember(state, law.late)
         _obey(state, law, heard, commands, k, 0)
         if guard.present:
             after, senses = blockers[k % len(blockers)], law.late.senses
             filter_step(state, after, commands.period, senses, guard.constants, guard.things, heard, guard.room)
-        else:
-            _copy(state, WX, state, UX, 2)
         if chassis.substeps > 0:
             shove(state, wheels, chassis, commands.period)
         else:
@@ -121,7 +127,6 @@ def integrate(state: Real, rows: Real, law: Law, noise: Noise, commands: Command
             _copy(state, PX, start, 0, 2)
             for stage in range(4):
                 _obey(state, law, heard, commands, k, first + (stage + 1) // 2)
-                _copy(state, WX, state, UX, 2)
                 _turn_out(state, slope)
                 if stage == 0:
                     _copy(slope, 0, total, 0, 2)
@@ -138,19 +143,21 @@ def integrate(state: Real, rows: Real, law: Law, noise: Noise, commands: Command
 
 @compiled
 def _obey(state: Real, law: Law, noise: Noise, commands: Commands, k: int, instant: int) -> None:
-    """What the law and v_r ask of each robot at an instant of period k, in its body frame."""
+    """What the law and v_r ask of each robot at an instant of period k, in its body frame: wish and command."""
     senses, e = law.late.senses, law.seen
     measure(state, law.edges, senses, noise, e)
     c, s, gx, gy = state[senses.frame], state[senses.frame + 1], state[GX], state[GY]
-    delta, rate, velocity = commands.delta[k, instant], commands.rate[k, instant], commands.velocity[k, instant]
+    delta, rate, velocity = commands.delta[k, instant], commands.rate[k, instant], commands.velocity
     _feedback(e, c, s, law.gains, delta[0], delta[1], rate[0], rate[1], gx, gy)
-    _hold(gx, gy, law.sequence, instant == 0, state[ACTIVE], state[SETTLED])
+    if law.settled > 0.0:
+        _hold(gx, gy, law.gains.factors, law.edges, law.settled, instant == 0, state[ACTIVE], state[SETTLED])
     for i in range(state.shape[1]):
-        own = velocity[min(i, len(velocity) - 1)]
-        vx, vy = own[0], own[1]
+        own = min(i, velocity.shape[2] - 1)
+        vx, vy = velocity[k, instant, own, 0], velocity[k, instant, own, 1]
         for m in range(state.shape[2]):
             state[VX, i, m], state[VY, i, m] = vx * c[i, m] + vy * s[i, m], vy * c[i, m] - vx * s[i, m]
-            state[WX, i, m], state[WY, i, m] = gx[i, m] + state[VX, i, m], gy[i, m] + state[VY, i, m]
+            wx, wy = gx[i, m] + state[VX, i, m], gy[i, m] + state[VY, i, m]
+            state[WX, i, m], state[WY, i, m], state[UX, i, m], state[UY, i, m] = wx, wy, wx, wy
 
 
 @compiled

@@ -50,7 +50,6 @@ class Runs:
     """
 
     def __init__(self, experiment: Experiment, seeds: Sequence[int]) -> None:
-        from formation.laws.activation_loop import sequence
         from formation.laws.angle_loop import gains
         from robots.safety.rows import constants, things
         from robots.safety.step import room
@@ -74,18 +73,17 @@ class Runs:
             self.state[[lanes.LEFT, lanes.RIGHT]] = np.nan
         law = cast(AngleLaw, experiment.law)  # nothing else is able
         edges = experiment.instruments.edges.astype(np.int64)
-        activation = self._waiting(lanes.ACTIVE, lanes.SETTLED)
         sensor = experiment.scenario.sensor
         self._law = Law(
             gains(law, experiment.target, experiment.first_follower),
             edges,
             late(self.state, sensor.delay_periods, sensor.own_motion),
-            sequence(activation, experiment.target.graph.neighbours),
+            self._wait(lanes.ACTIVE, lanes.SETTLED),
             np.empty((2, len(edges), len(seeds))),
         )
         self._imperfections = experiment.instruments.imperfections
         saturation = experiment.scenario.robot.saturation if experiment.plant != "unicycle" else None
-        self._wheels = lanes.wheels(drive, nid, saturation, n)
+        self._wheels = lanes.wheels(drive, nid, saturation, n, len(seeds))
         around, settings = things(experiment.arena), constants(experiment.filter_settings, drive, nid, n)
         self._guard = Guard(experiment.safety != "none", settings, around, room(n, len(seeds), around))
         self._room = np.empty((3, 2, n, len(seeds)))
@@ -119,15 +117,14 @@ class Runs:
                 yield Chunk(first, part.phase, room, blockers)
                 first += len(room)
 
-    def _waiting(self, active: int, settled: int) -> SequentialActivation | None:
-        """Who waits for whom, with the fields of the state that tell it; None where all begin at once."""
-        experiment, law = self._experiment, self._experiment.scenario.law
+    def _wait(self, active: int, settled: int) -> float:
+        """Let agents wait, by two fields of the state, until others are so near their places, metres; 0 for nobody."""
+        law = self._experiment.scenario.law
         if law.activation != "sequential":
-            return None
-        activation = SequentialActivation(experiment.target, law.settled_m, (), experiment.own_gains)
-        self.state[active] = activation.active[:, None]
+            return 0.0
+        self.state[active] = SequentialActivation(self._experiment.target, law.settled_m).active[:, None]
         self.state[settled, : agents.FIRST_ORDINARY] = 1.0
-        return activation
+        return law.settled_m
 
     def _noise(self, periods: int) -> Noise:
         """The noise of the next periods, keys (K, L)."""

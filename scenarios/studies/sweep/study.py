@@ -42,6 +42,9 @@ MOST_WATCHED = 1000
 WATCHED_STATES = 8_000_000
 """Robots times control periods in such a batch: a fraction of a second."""
 
+WATCHED_STATES_IN_CONTACT = 100_000
+"""The same on pymunk."""
+
 
 @dataclass(frozen=True)
 class Combination:
@@ -185,9 +188,10 @@ def _as_varied(message: str, variations: Sequence[Variation]) -> str:
 def batch_size(experiment: Experiment) -> int:
     """Runs that are one task."""
     step = together(experiment)
-    if experiment.plant == SINGLE or not is_watched(experiment):
+    if not is_watched(experiment):
         return step
-    passes = WATCHED_STATES // (step * experiment.n * count_periods(experiment))
+    states = WATCHED_STATES_IN_CONTACT if experiment.plant == SINGLE else WATCHED_STATES
+    passes = states // (step * experiment.n * count_periods(experiment))
     return min(MOST_WATCHED, step * max(1, passes))
 
 

@@ -104,6 +104,10 @@ def test_sine_and_cosine_are_within_two_units_in_the_last_place() -> None:
         for k in range(len(angles)):
             out[0, k], out[1, k] = sine_cosine(angles[k])
 
+    near = np.linspace(-lanes.WITHIN, lanes.WITHIN, 20001)
+    out = np.empty((2, len(near)))
+    both(near, out)
+    assert np.array_equal(out, np.transpose([lanes.sine_cosine_within(angle) for angle in near.tolist()]))
     angles = np.concatenate([np.linspace(-7.0, 7.0, 20001), np.random.default_rng(0).uniform(-1e4, 1e4, 20000)])
     out = np.empty((2, len(angles)))
     both(angles, out)
