@@ -90,9 +90,13 @@ class Labels:
         candidates = centre + np.concatenate(rings)
         loss = size * (_STEP_BACK * np.arange(len(reach))[:, None] + _TURN_AWAY * np.abs(_FROM_ABOVE)).ravel()
         clearance = self._clearance(candidates, half_width, size)
+        if crowded and clearance.max() < _LEGIBLE * size:
+            return
         score = clearance - loss - 2.0 * np.clip(size - clearance / _COVERING, 0.0, size)
         far = slice(_DIRECTIONS * _FAR, None)
-        score[far] -= np.where(self._misleading(centre, candidates[far], distance, half_width + size), 0.6 * size, 0.0)
+        if score.argmax() >= far.start:  # else none of those that it takes something from is chosen anyway
+            misleading = self._misleading(centre, candidates[far], distance, half_width + size)
+            score[far] -= np.where(misleading, 0.6 * size, 0.0)
         if crowded and clearance[score.argmax()] < _LEGIBLE * size:
             return
         chosen = int(score.argmax())
@@ -126,10 +130,14 @@ class Labels:
 
         The lines lead back to ``centre``, within ``distance`` of which is what they name.
         """
-        things = self._solid[np.hypot(*(self._solid - centre).T) > distance] - centre
         way = candidates - centre
+        reach = np.linalg.norm(way, axis=-1).max(initial=0.0) + max(apart, _FREE)  # what is farther off matters to none
+        things, labels = (
+            each[np.hypot(each[:, 0], each[:, 1]) <= reach] for each in (self._solid - centre, self._labels - centre)
+        )
+        things = things[np.hypot(things[:, 0], things[:, 1]) > distance]
         found = np.linalg.norm(way[:, None] - things, axis=-1).min(axis=1, initial=np.inf) < apart
-        things = np.concatenate([things, self._labels - centre])
+        things = np.concatenate([things, labels])
         share = np.clip(way @ things.T / (way**2).sum(axis=1, keepdims=True), 0.0, 1.0)
         gap = np.linalg.norm(share[..., None] * way[:, None] - things, axis=-1)
         return np.asarray(found | (gap.min(axis=1, initial=np.inf) < _FREE))
