@@ -29,6 +29,9 @@ FAMILIES: tuple[tuple[click.Command, ...], ...] = (
 )
 """All commands, a family a file."""
 
+THREADS = ("OPENBLAS_NUM_THREADS", "GOTO_NUM_THREADS", "OMP_NUM_THREADS")
+"""Variables that tell numpy's OpenBLAS how many threads it may have, the first of them before the others."""
+
 WHOLE = 1000
 """Characters of a sentence, at most."""
 
@@ -67,6 +70,7 @@ def cli(ctx: click.Context) -> None:
 def main() -> None:
     """Run the command line: errors on one line on stderr, never a traceback for bad input."""
     gc.set_threshold(50_000, 20, 50)  # loading packages makes objects and frees none: searching them costs 0.2 s a run
+    _think_in_one_thread()
     _show_what_the_terminal_can()
     logging.getLogger("matplotlib").setLevel(logging.ERROR)  # not that its folder is a temporary one
     try:
@@ -78,6 +82,15 @@ def main() -> None:
         _fail(error.format_message())
     except click.Abort:
         sys.exit(INTERRUPTED)
+
+
+def _think_in_one_thread() -> None:
+    """Unless the user says how many threads numpy may have: matrices here are small, and idle threads wait at work.
+
+    It is known before numpy is loaded, and to the processes that this one starts.
+    """
+    if not any(name in os.environ for name in THREADS):
+        os.environ[THREADS[0]] = "1"
 
 
 def _show_what_the_terminal_can() -> None:

@@ -357,3 +357,16 @@ def test_a_full_disk_is_one_clear_line_and_leaves_nothing(tmp_path: Path) -> Non
     out, err = process.communicate(timeout=60)
     refused(Answer(process.returncode, out.strip(), err), "--out mine: cannot be written")
     assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize(("given", "found"), [({}, "1"), ({"OMP_NUM_THREADS": "3"}, None)])
+def test_numpy_has_one_thread_unless_the_user_says_otherwise(given: dict[str, str], found: str | None) -> None:
+    free = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")}
+    code = (
+        "import sys; sys.argv = ['formation', 'list']; from scenarios.cli.main import main\n"
+        "before = 'numpy' in sys.modules\n"
+        "try: main()\nexcept SystemExit: pass\n"
+        "import os; print(before, os.environ.get('OPENBLAS_NUM_THREADS'), file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], env=free | given, capture_output=True, text=True, timeout=60)
+    assert done.stderr == f"False {found}\n"
