@@ -28,9 +28,6 @@ SWEEPS = 12
 UNCHANGED = 2e-5
 """Share of delta by which no place changes any more."""
 
-TURN = 0.2
-"""Radians that a heading turns at most in a step of its integration."""
-
 
 def settled(experiment: Experiment, start: Real, reference: Reference, delta: complex, period: float) -> Complex:
     """(S, n) y_k over one cycle to which robots settle that hold commands, with the experiment's filter if it has one.
@@ -73,13 +70,17 @@ def _pushes(
 
 
 def _headings(way: Complex, step: float, ahead: float | Real) -> Complex:
-    """(S, n) headings, as unit complex numbers, of robots whose points follow the way (S, n) of a cycle for a while."""
-    found = np.empty_like(way)
-    heading = np.exp(1j * np.angle(way[0]))
-    parts = max(1, int(np.ceil(np.abs(way).max() * step / (TURN * np.min(ahead)))))
+    """(S, n) headings, as unit complex numbers, of robots whose points follow the way (S, n) of a cycle for a while.
+
+    A heading at an angle phi from a velocity w that is held turns by phi' = -|w| sin(phi) / l, so that tan(phi / 2)
+    shrinks by exp(-|w| step / l) in a step.
+    """
+    found, direction = np.empty_like(way), np.exp(1j * np.angle(way))
+    shrinking = np.exp(-np.abs(way) * step / ahead)
+    heading = direction[0]
     for _ in range(ROUNDS):
-        for row, wanted in enumerate(way):
+        for row in range(len(way)):
             found[row] = heading
-            for _ in range(parts):
-                heading = heading * np.exp(1j * (wanted * np.conj(heading)).imag * (step / parts / ahead))
+            apart = np.angle(heading * np.conj(direction[row]))
+            heading = direction[row] * np.exp(2j * np.arctan(np.tan(apart / 2.0) * shrinking[row]))
     return found
