@@ -26,11 +26,11 @@ LONGEST_HEADER = 400
 FILES = ("rows.csv", "summary.json", "study.json")
 
 STUDIES = (
-    ("--plant", "saturated", "--set", "duration_s=3", "--seeds", "0:1200,1300", "--workers", "2"),
-    ("--set", "duration_s=0.3", "--seeds", "0:150", "--vary", "safety.filter=none,decentralised", "--workers", "2"),
-    ("--set", "duration_s=0.3", "--seeds", "0:200", "--workers", "1"),
+    ("--plant", "saturated", "--set", "duration_s=60", "--seeds", "0:40000,50000", "--workers", "2"),
+    ("--set", "duration_s=3", "--seeds", "0:1200", "--vary", "safety.filter=none,decentralised", "--workers", "2"),
+    ("--set", "duration_s=3", "--seeds", "0:1200", "--workers", "1"),
 )
-"""Batches and single runs, varied and not, in this process and in others."""
+"""Batches and single runs, varied and not, in this process and in others; some seconds each, to be stopped in."""
 
 PATIENCE = 20
 """Times that one sweep is stopped, at most, before it is left alone to end."""
@@ -90,7 +90,7 @@ def main() -> None:
     rng = random.Random(given.seed)
     os.environ["OMP_NUM_THREADS"] = "1"
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job passes on that it ignores it
-    different = 0
+    different = untouched = 0
     with tempfile.TemporaryDirectory() as scratch:
         whole = [Path(scratch) / f"whole-{number}" for number in range(len(STUDIES))]
         for study, out in zip(STUDIES, whole, strict=True):
@@ -106,10 +106,10 @@ def main() -> None:
             else:
                 subprocess.run(command(STUDIES[which], out), stdout=subprocess.DEVNULL, check=True)
             wrong = differing(out, whole[which])
-            different += bool(wrong)
+            different, untouched = different + bool(wrong), untouched + (not stops)
             verdict = f"DIFFERENT: {', '.join(wrong)}" if wrong else "the same files"
             print(f"sweep {number + 1}: {verdict}; stopped {len(stops)} times: {', '.join(stops)}", flush=True)
-    print(f"{given.sweeps} sweeps, {different} different")
+    print(f"{given.sweeps} sweeps, {different} different, {untouched} never stopped")
     sys.exit(1 if different else 0)
 
 
