@@ -82,9 +82,10 @@ def write(places: Iterable[Path], name: str, code: bytes) -> None:
     for place in places:
         with suppress(OSError):
             place.mkdir(parents=True, exist_ok=True)
-            with tempfile.NamedTemporaryFile(dir=place, delete=False) as file:
-                file.write(hashlib.sha256(code).digest() + code)
-            os.replace(file.name, place / name)
+            with tempfile.TemporaryDirectory(dir=place) as scratch:  # which a full disk leaves nothing of
+                new = Path(scratch) / name
+                new.write_bytes(hashlib.sha256(code).digest() + code)
+                os.replace(new, place / name)
             return
 
 

@@ -129,6 +129,22 @@ def test_machine_code_that_is_not_whole_or_not_of_here_is_made_anew(damage: str,
     third(table, out)  # by what the second one has kept
 
 
+def test_a_full_disk_costs_the_machine_code_and_leaves_nothing_behind(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("robots.compiled.kept.os.replace", full)
+    kept.write([tmp_path / "full"], "code.o", b"code")
+    assert list((tmp_path / "full").iterdir()) == []
+    monkeypatch.undo()
+    (tmp_path / "file").write_text("no folder", encoding="utf-8")
+    kept.write([tmp_path / "file", tmp_path / "next"], "code.o", b"code")
+    assert kept.read([tmp_path / "file", tmp_path / "next"], "code.o") == b"code"
+    assert [path.name for path in (tmp_path / "next").iterdir()] == ["code.o"]
+
+
 WITHOUT_NUMBA = """
 import sys
 from scenarios.definition.experiment import open_experiment
