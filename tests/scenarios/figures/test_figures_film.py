@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -139,6 +142,31 @@ def test_two_mp4s_of_one_run_are_the_same_bytes(run: Run, tmp_path: Path) -> Non
     for name in ("a.mp4", "b.mp4"):
         animate(*run, tmp_path / name, 8.0, 3.0, FRAME, silent)
     assert (tmp_path / "a.mp4").read_bytes() == (tmp_path / "b.mp4").read_bytes()
+
+
+FILM = """
+import hashlib, sys
+from pathlib import Path
+from scenarios.definition.experiment import open_experiment
+from scenarios.figures.films.encode import animate
+from scenarios.figures.films.layout import Frame
+from scenarios.measures.metrics import measure
+from scenarios.simulation.loop import simulate
+shape = open_experiment("shape", (), 20.0)
+trajectory = simulate(shape)
+animate(shape, trajectory, measure(shape, trajectory), Path(sys.argv[1]), 8.0, 3.0, Frame(), lambda *_: None)
+print(hashlib.sha256(Path(sys.argv[1]).read_bytes()).hexdigest())
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="glibc fills memory with what it is told")
+def test_an_mp4_does_not_depend_on_what_memory_held_before(tmp_path: Path) -> None:
+    found = set()
+    for fill in ("1", "3"):
+        told = os.environ | {"MALLOC_PERTURB_": fill, "MALLOC_MMAP_THRESHOLD_": "4000000000"}
+        code = [sys.executable, "-c", FILM, str(tmp_path / "a.mp4")]
+        found.add(subprocess.run(code, capture_output=True, text=True, check=True, env=told).stdout)
+    assert len(found) == 1
 
 
 @pytest.mark.parametrize("write", [encode._moving_picture, encode._mp4])
